@@ -10,6 +10,7 @@
 #include "app/bench/overlap/pairs.h"
 #include "app/bench/report.h"
 #include "app/bench/timer.h"
+#include "app/cli/parse.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -30,59 +31,26 @@ typedef struct Options {
   const char *device; // as device_open takes it
   bool wants_model[DEVICE_OVERLAP_MODELS], wants_set[APP_BENCH_SET_COUNT];
   bool wants_quantity[QUANTITY_COUNT], wants_residence[RESIDENCE_COUNT], wants_torch;
-  int batches[APP_BENCH_MAX_LIST], batch_count;
+  AppBenchList batches;
 } Options;
 
-enum { KEY_TORCH = 0x200 };
-
-static const struct argp_option option_table[] = {
-    {"model", 'm', "NAME,...", 0, "Overlap models that have kernels (default: all)", 1},
-    {"set", 's', "NAME,...", 0, "Sets of pairs: near, uniform, disjoint (default: all)", 1},
-    {"quantity", 'Q', "NAME,...", 0, "V, V+grad, V+centroid (default: all that a model has)", 1},
-    {"batch", 'b', "N,...", 0, "Pairs a call (default: 4096)", 1},
-    {"residence", 'R', "NAME,...", 0, "Where the pairs lie: device, indices, host (default: all)", 1},
-    {"torch", KEY_TORCH, NULL, 0,
-     "PyTorch beside models with a network, on the same device: the network alone, without gate and frame",
-     1},
+static const AppOption option_table[] = {
+    {"model", 'm', "NAME,...", "Overlap models that have kernels (default: all)", 1, CLI_CHOICES,
+     CLI_TO(Options, wants_model), .most = DEVICE_OVERLAP_MODELS, .choices = device_overlap_models},
+    {"set", 's', "NAME,...", "Sets of pairs: near, uniform, disjoint (default: all)", 1, CLI_CHOICES,
+     CLI_TO(Options, wants_set), .most = APP_BENCH_SET_COUNT, .choices = app_bench_sets},
+    {"quantity", 'Q', "NAME,...", "V, V+grad, V+centroid (default: all that a model has)", 1, CLI_CHOICES,
+     CLI_TO(Options, wants_quantity), .most = QUANTITY_COUNT, .choices = quantities},
+    {"batch", 'b', "N,...", "Pairs a call (default: 4096)", 1, CLI_OWN, CLI_TO(Options, batches),
+     .read = app_bench_options_read_batches},
+    {"residence", 'R', "NAME,...", "Where the pairs lie: device, indices, host (default: all)", 1,
+     CLI_CHOICES, CLI_TO(Options, wants_residence), .most = RESIDENCE_COUNT, .choices = residences},
+    {"torch", 0, NULL,
+     "PyTorch beside models with a network, on the same device: the network alone, without gate and frame", 1,
+     CLI_FLAG, CLI_TO(Options, wants_torch)},
+    {.table = app_bench_options, .offset = offsetof(Options, common)},
     {0},
 };
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &options->common;
-    return 0;
-  case 'm':
-    app_bench_options_choose(state, "model", text, device_overlap_models, DEVICE_OVERLAP_MODELS,
-                             options->wants_model);
-    return 0;
-  case 's':
-    app_bench_options_choose(state, "set", text, app_bench_sets, APP_BENCH_SET_COUNT, options->wants_set);
-    return 0;
-  case 'Q':
-    app_bench_options_choose(state, "quantity", text, quantities, QUANTITY_COUNT, options->wants_quantity);
-    return 0;
-  case 'b':
-    options->batch_count = app_bench_options_counts(state, "batch", text, 10000000, options->batches);
-    return 0;
-  case KEY_TORCH:
-    options->wants_torch = true;
-    return 0;
-  case 'R':
-    app_bench_options_choose(state, "residence", text, residences, RESIDENCE_COUNT, options->wants_residence);
-    return 0;
-  case ARGP_KEY_ARG:
-    if (options->device) argp_error(state, "one device at a time; '%s' is the second", text);
-    options->device = text;
-    return 0;
-  case ARGP_KEY_NO_ARGS:
-    argp_error(state, "name a device: host, opencl, cuda or auto; `tetlap devices` lists them");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
 
 // Rows on which one takes turns.
 typedef struct Contestant {
@@ -354,11 +322,11 @@ static Status measure_sets(Bench *bench) {
   const Options *options = bench->options;
   bool wants_torch = options->wants_torch;
   for (int set = 0; set < APP_BENCH_SET_COUNT; set++) {
-    for (int b = 0; b < options->batch_count && options->wants_set[set]; b++) {
+    for (int b = 0; b < options->batches.count && options->wants_set[set]; b++) {
       int first = bench->count, first_torch = bench->torch_count;
-      TRY(app_bench_pairs_fill(app_bench_sets[set], options->batches[b], SEED, bench->pairs));
-      add_contestants(bench, set, options->batches[b]);
-      if (wants_torch) wants_torch = add_torches(bench, options->batches[b]);
+      TRY(app_bench_pairs_fill(app_bench_sets[set], options->batches.numbers[b], SEED, bench->pairs));
+      add_contestants(bench, set, options->batches.numbers[b]);
+      if (wants_torch) wants_torch = add_torches(bench, options->batches.numbers[b]);
       TRY(take_rounds(bench, first, first_torch));
     }
     wants_torch = wants_torch && !options->wants_set[set]; // once: it is not shown pairs
@@ -373,11 +341,9 @@ static Status measure_sets(Bench *bench) {
 
 static Status make_inputs(Bench *bench) {
   const Options *options = bench->options;
-  size_t most = 0;
-  for (int b = 0; b < options->batch_count; b++)
-    most = (size_t)options->batches[b] > most ? (size_t)options->batches[b] : most;
+  size_t most = (size_t)app_bench_list_largest(&options->batches);
   int rows =
-      APP_BENCH_SET_COUNT * RESIDENCE_COUNT * QUANTITY_COUNT * DEVICE_OVERLAP_MODELS * options->batch_count;
+      APP_BENCH_SET_COUNT * RESIDENCE_COUNT * QUANTITY_COUNT * DEVICE_OVERLAP_MODELS * options->batches.count;
   bench->contestants = memory_zeroed((size_t)rows, sizeof *bench->contestants);
   bench->torches = memory_zeroed((size_t)rows, sizeof *bench->torches);
   bench->pairs = memory_zeroed(most * 24, sizeof(double));
@@ -439,28 +405,27 @@ static Status run(const Options *options) {
   return status;
 }
 
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .args_doc = "DEVICE",
-    .doc = "Measure how many pairs of tetrahedra a second a device answers: host, "
-           "opencl, cuda or auto, with a number where there are several, as in opencl:1.",
-    .children = app_bench_report_children,
-    .help_filter = app_bench_report_help};
-
 static int run_command(int argument_count, char **arguments) {
-  Options options = {.common = app_bench_options_default(9), .batches = {4096}, .batch_count = 1};
+  Options options = {.common = app_bench_options_default(9), .batches = {{4096}, 1}};
   for (int m = 0; m < DEVICE_OVERLAP_MODELS; m++) options.wants_model[m] = true;
   for (int i = 0; i < APP_BENCH_SET_COUNT; i++) options.wants_set[i] = true;
   for (int i = 0; i < QUANTITY_COUNT; i++) options.wants_quantity[i] = options.wants_residence[i] = true;
-  app_bench_report_read(&lab_device, argument_count, arguments, &options);
+  app_cli_parse(&lab_device, argument_count, arguments, &options);
   return app_cli_command_end(run(&options));
 }
 
-const AppCommand lab_device = {.name = "device",
-                               .help = "kernels of overlap models on a device: pairs of tetrahedra a second",
-                               .argp = &argp,
-                               .run = run_command,
-                               .has_threads = true,
-                               .rows = &report,
-                               .describe_rows = app_bench_report_describe};
+const AppCommand lab_device = {
+    .name = "device",
+    .help = "kernels of overlap models on a device: pairs of tetrahedra a second",
+    .options = option_table,
+    .arguments =
+        &(const AppArguments){"DEVICE", offsetof(Options, device), 1,
+                              .missing =
+                                  "name a device: host, opencl, cuda or auto; `tetlap devices` lists them",
+                              .excess = "one device at a time; '%s' is the second"},
+    .doc = "Measure how many pairs of tetrahedra a second a device answers: host, "
+           "opencl, cuda or auto, with a number where there are several, as in opencl:1.",
+    .run = run_command,
+    .has_threads = true,
+    .rows = &report,
+    .describe_rows = app_bench_report_describe};

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lab/elements.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "app/bench/report.h"
 #include "app/bench/timer.h"
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "app/scene/read.h"
 #include "base/memory.h"
 #include "base/random.h"
@@ -26,22 +27,12 @@ typedef struct Options {
   int passes;
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"passes", 'p', "N", 0, "Passes over the elements a round (default: 20)", 1}, {0}};
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &options->common;
-    return 0;
-  case 'p':
-    options->passes = (int)app_argument_integer(state, "passes", text, 1, 1000000);
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
+static const AppOption option_table[] = {
+    {"passes", 'p', "N", "Passes over the elements a round (default: 20)", 1, CLI_INTEGER,
+     CLI_TO(Options, passes), 1, 1000000},
+    {.table = app_bench_options, .offset = offsetof(Options, common)},
+    {0},
+};
 
 // A block of one kind of elements, bent out of shape and moving.
 typedef struct Block {
@@ -303,21 +294,16 @@ static Status run(const Options *options) {
   return status;
 }
 
-static const struct argp argp = {.options = option_table,
-                                 .parser = parse,
-                                 .doc = "Measure forces and matrices of elements in vector lanes.",
-                                 .children = app_bench_report_children,
-                                 .help_filter = app_bench_report_help};
-
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(5), .passes = 20};
-  app_bench_report_read(&lab_elements, argument_count, arguments, &options);
+  app_cli_parse(&lab_elements, argument_count, arguments, &options);
   return app_cli_command_end(run(&options));
 }
 
 const AppCommand lab_elements = {.name = "elements",
                                  .help = "forces and matrices of elements in vector lanes",
-                                 .argp = &argp,
+                                 .options = option_table,
+                                 .doc = "Measure forces and matrices of elements in vector lanes.",
                                  .run = run_command,
                                  .rows = &report,
                                  .describe_rows = app_bench_report_describe};

@@ -7,7 +7,7 @@
 
 #include "app/bench/report.h"
 #include "app/bench/timer.h"
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -29,43 +29,22 @@ typedef struct Options {
   AppBenchOptions common;
   const char *nets[MAX_NETS]; // names or weights files
   int net_count;
-  bool wants_quantity[QUANTITY_COUNT], has_torch;
-  int batches[APP_BENCH_MAX_LIST], batch_count;
+  bool wants_quantity[QUANTITY_COUNT], leaves_torch_out;
+  AppBenchList batches;
 } Options;
 
-enum { KEY_NO_TORCH = 256 };
-
-static const struct argp_option option_table[] = {
-    {"net", 'm', "NAME,...", 0, "Networks, by shipped name or weights file (default: tpn,geo,geo-small)", 1},
-    {"quantity", 'Q', "NAME,...", 0, "V, V+grad: outputs, and their derivative by the inputs (default: both)",
-     1},
-    {"batch", 'b', "N,...", 0, "Samples a call (default: 2048, the paper's)", 1},
-    {"no-torch", KEY_NO_TORCH, NULL, 0, "Leave PyTorch out", 1},
+static const AppOption option_table[] = {
+    {"net", 'm', "NAME,...", "Networks, by shipped name or weights file (default: tpn,geo,geo-small)", 1,
+     CLI_LIST, CLI_TO(Options, nets), .most = MAX_NETS, .example = "tpn,geo",
+     .count_offset = offsetof(Options, net_count)},
+    {"quantity", 'Q', "NAME,...", "V, V+grad: outputs, and their derivative by the inputs (default: both)", 1,
+     CLI_CHOICES, CLI_TO(Options, wants_quantity), .most = QUANTITY_COUNT, .choices = quantities},
+    {"batch", 'b', "N,...", "Samples a call (default: 2048, the paper's)", 1, CLI_OWN,
+     CLI_TO(Options, batches), .read = app_bench_options_read_batches},
+    {"no-torch", 0, NULL, "Leave PyTorch out", 1, CLI_FLAG, CLI_TO(Options, leaves_torch_out)},
+    {.table = app_bench_options, .offset = offsetof(Options, common)},
     {0},
 };
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &options->common;
-    return 0;
-  case 'm':
-    options->net_count = app_argument_list(state, "net", text, "tpn,geo", MAX_NETS, options->nets);
-    return 0;
-  case 'Q':
-    app_bench_options_choose(state, "quantity", text, quantities, QUANTITY_COUNT, options->wants_quantity);
-    return 0;
-  case 'b':
-    options->batch_count = app_bench_options_counts(state, "batch", text, 10000000, options->batches);
-    return 0;
-  case KEY_NO_TORCH:
-    options->has_torch = false;
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
 
 // A network in the precision that the overlap models compute it in: TetrahedronPairNet in float, `geo` in
 // double.
@@ -108,13 +87,6 @@ typedef struct Bench {
 
 static Status fail_as_net(NetStatus status) {
   return status == NET_OK ? STATUS_OK : status_fail(STATUS_INPUT, "%s", net_status_message());
-}
-
-static int largest_batch(const Options *options) {
-  int largest = 1;
-  for (int b = 0; b < options->batch_count; b++)
-    if (options->batches[b] > largest) largest = options->batches[b];
-  return largest;
 }
 
 static Status make_inputs(Net *net, int count) {
@@ -184,7 +156,7 @@ static Status read_net(Net *net, const char *name, int count) {
 
 // Networks whose weights are not there are left out, by name.
 static Status read_nets_in(Bench *bench) {
-  int count = largest_batch(bench->options);
+  int count = app_bench_list_largest(&bench->options->batches);
   for (int n = 0; n < bench->options->net_count; n++) {
     Status status = read_net(&bench->nets[bench->net_count], bench->options->nets[n], count);
     if (status == STATUS_IO)
@@ -197,15 +169,15 @@ static Status read_nets_in(Bench *bench) {
 }
 
 static Status start_torch(Bench *bench) {
-  for (int n = 0; n < bench->net_count && bench->options->has_torch; n++)
-    for (int t = 0; t < bench->options->common.thread_list_count; t++) {
+  for (int n = 0; n < bench->net_count && !bench->options->leaves_torch_out; n++)
+    for (int t = 0; t < bench->options->common.thread_list.count; t++) {
       const Net *net = &bench->nets[n];
       const LabTorchDef def = {.weights = net->path,
                                .precision = net->is_float ? LAB_TORCH_FLOAT : LAB_TORCH_DOUBLE,
                                .device = "cpu",
                                .inputs = net->inputs,
                                .size = net->input_bytes,
-                               .threads = bench->options->common.thread_list[t]};
+                               .threads = bench->options->common.thread_list.numbers[t]};
       Status status = lab_torch_peer_start(&bench->torches[n][t], &def);
       if (status == STATUS_OK) continue;
       lab_torch_peer_stop(&bench->torches[n][t]);
@@ -252,7 +224,7 @@ static Status begin(Contestant *contestant, bool *is_there) {
 static Status add(Bench *bench, Contestant contestant, int n, int t) {
   contestant.net = &bench->nets[n];
   contestant.torch = &bench->torches[n][t];
-  contestant.threads = bench->options->common.thread_list[t];
+  contestant.threads = bench->options->common.thread_list.numbers[t];
   contestant.outputs = bench->outputs, contestant.gradients = bench->gradients;
   bench->contestants[bench->count] = contestant;
   bool is_there;
@@ -265,10 +237,11 @@ static Status add_all(Bench *bench) {
   const Options *options = bench->options;
   for (int n = 0; n < bench->net_count; n++)
     for (int q = 0; q < QUANTITY_COUNT; q++)
-      for (int b = 0; b < options->batch_count && options->wants_quantity[q]; b++)
-        for (int t = 0; t < options->common.thread_list_count; t++)
+      for (int b = 0; b < options->batches.count && options->wants_quantity[q]; b++)
+        for (int t = 0; t < options->common.thread_list.count; t++)
           for (int i = 0; i < IMPLEMENTATIONS; i++) {
-            Contestant contestant = {.implementation = i, .quantity = q, .batch = options->batches[b]};
+            Contestant contestant = {
+                .implementation = i, .quantity = q, .batch = options->batches.numbers[b]};
             TRY(add(bench, contestant, n, t));
           }
   return STATUS_OK;
@@ -289,7 +262,7 @@ static Status make_seeds(Net *net, size_t batch) {
 
 static Status make(Bench *bench) {
   const Options *options = bench->options;
-  size_t batch = (size_t)largest_batch(options), widest = 1, most = 1;
+  size_t batch = (size_t)app_bench_list_largest(&options->batches), widest = 1, most = 1;
   TRY(read_nets_in(bench));
   for (int n = 0; n < bench->net_count; n++) {
     size_t inputs = (size_t)bench->nets[n].plan->shape.input_count;
@@ -297,8 +270,8 @@ static Status make(Bench *bench) {
     widest = inputs > widest ? inputs : widest, most = outputs > most ? outputs : most;
     TRY(make_seeds(&bench->nets[n], batch));
   }
-  bench->contestants = memory_zeroed((size_t)(bench->net_count * QUANTITY_COUNT * options->batch_count *
-                                                  options->common.thread_list_count * IMPLEMENTATIONS +
+  bench->contestants = memory_zeroed((size_t)(bench->net_count * QUANTITY_COUNT * options->batches.count *
+                                                  options->common.thread_list.count * IMPLEMENTATIONS +
                                               1),
                                      sizeof *bench->contestants);
   bench->outputs = memory_zeroed(batch * most, sizeof(double));
@@ -504,30 +477,23 @@ static Status run(const Options *options) {
   return status;
 }
 
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .doc = "Measure networks without their geometry, by our kernels and by PyTorch where it is installed.",
-    .children = app_bench_report_children,
-    .help_filter = app_bench_report_help};
-
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = app_bench_options_default(9),
                      .nets = {"tpn", "geo", "geo-small"},
                      .net_count = 3,
                      .wants_quantity = {true, true},
-                     .has_torch = true,
-                     .batches = {2048},
-                     .batch_count = 1};
+                     .batches = {{2048}, 1}};
   options.common.takes_thread_list = true;
-  app_bench_report_read(&lab_net, argument_count, arguments, &options);
+  app_cli_parse(&lab_net, argument_count, arguments, &options);
   return app_cli_command_end(run(&options));
 }
 
-const AppCommand lab_net = {.name = "net",
-                            .help = "networks alone, beside PyTorch: samples a second",
-                            .argp = &argp,
-                            .run = run_command,
-                            .has_threads = true,
-                            .rows = &report,
-                            .describe_rows = app_bench_report_describe};
+const AppCommand lab_net = {
+    .name = "net",
+    .help = "networks alone, beside PyTorch: samples a second",
+    .options = option_table,
+    .doc = "Measure networks without their geometry, by our kernels and by PyTorch where it is installed.",
+    .run = run_command,
+    .has_threads = true,
+    .rows = &report,
+    .describe_rows = app_bench_report_describe};

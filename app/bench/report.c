@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/bench/report.h"
 
-#include <stdint.h>
-
 #include "app/cli/versions.h"
 #include "base/cpu.h"
 
@@ -64,16 +62,4 @@ char *app_bench_report_describe(const void *rows) {
   app_table_describe(&(AppTable){parts, PART_COUNT, 0}, stream);
   fclose(stream);
   return help;
-}
-
-const struct argp_child app_bench_report_children[] = {{.argp = &app_bench_options_argp}, {0}};
-
-char *app_bench_report_help(int key, const char *text, void *options) {
-  if (key != ARGP_KEY_HELP_POST_DOC) return (char *)(uintptr_t)text; // argp's own way: it is not changed
-  return app_bench_report_describe(((const AppBenchOptions *)options)->report);
-}
-
-void app_bench_report_read(const AppCommand *command, int argument_count, char **arguments, void *options) {
-  ((AppBenchOptions *)options)->report = command->rows;
-  argp_parse(command->argp, argument_count, arguments, 0, NULL, options);
 }

@@ -7,10 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/ranks.h"
 #include "base/text.h"
 
-enum { MOST_THREADS = 1024, MOST_WORDS = 64 };
+enum { MOST_WORDS = 64 };
 
 long long app_argument_integer(struct argp_state *state, const char *option, const char *text,
                                long long least, long long most) {
@@ -51,14 +50,6 @@ uint64_t app_argument_seed(struct argp_state *state, const char *text) {
   return seed;
 }
 
-int app_argument_ranks(struct argp_state *state, const char *text) {
-  return (int)app_argument_integer(state, "ranks", text, 1, RANKS_MOST);
-}
-
-int app_argument_threads(struct argp_state *state, const char *text) {
-  return (int)app_argument_integer(state, "threads", text, 1, MOST_THREADS);
-}
-
 int app_argument_list(struct argp_state *state, const char *option, char *text, const char *example, int most,
                       const char **words) {
   char *given = strdup(text);
@@ -85,6 +76,31 @@ const char *app_argument_words(struct argp_state *state, const char *option, cha
   }
   *end = 0;
   return text;
+}
+
+static int find(const char *word, const char *const *names, int count) {
+  int found = 0;
+  while (found < count && strcmp(names[found], word) != 0) found++;
+  return found;
+}
+
+void app_argument_choose(struct argp_state *state, const char *option, char *text, const char *const *names,
+                         int count, bool *wanted) {
+  char known[256] = "";
+  size_t used = 0;
+  for (int i = 0; i < count; i++) {
+    text_append(known, sizeof known, &used, "%s%s", i ? ", " : "", names[i]);
+    wanted[i] = false;
+  }
+  const char *words[MOST_WORDS];
+  int word_count = app_argument_list(state, option, text, names[0], MOST_WORDS, words);
+  for (int w = 0; w < word_count; w++) {
+    int found = find(words[w], names, count);
+    if (found == count)
+      argp_error(state, "--%s has '%s'; give some of: %s", option, words[w], known);
+    else
+      wanted[found] = true;
+  }
 }
 
 void app_argument_add(struct argp_state *state, const char *what, const char *text, int most,

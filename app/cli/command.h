@@ -4,17 +4,20 @@
 #ifndef TETLAP_APP_CLI_COMMAND_H
 #define TETLAP_APP_CLI_COMMAND_H
 
-#include <argp.h>
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "app/cli/option.h"
 #include "base/status.h"
 
-// A command has `argp` and `run`, a group has `children`. All is constant and borrowed.
+// A command has `run`, a group has `children`. All is constant and borrowed.
 typedef struct AppCommand {
-  const char *name;        // the word on the command line
-  const char *help;        // one line, for lists of commands
-  const struct argp *argp; // its options, arguments and description
+  const char *name;              // the word on the command line
+  const char *help;              // one line, for lists of commands
+  const AppOption *options;      // ended by a zeroed line; NULL: only those that every command has
+  const AppArguments *arguments; // NULL: takes none
+  void (*check)(struct argp_state *state,
+                void *options); // of its options together, once they are read; NULL: none
   int (*run)(int argument_count,
              char **arguments);             // arguments[0]: the words that called it; gives the exit code
   bool has_threads;                         // computes for long, on many threads
@@ -24,7 +27,8 @@ typedef struct AppCommand {
   const struct AppCommand *const *children; // of a group, such as `tetlap dataset VERB`; ended by NULL
   const char *child_word;                   // of a group: what a child is called, "verb"
   const char *child_of_files;               // the child that a file's name calls for; NULL: none
-  const char *doc, *ending;                 // of a group: above and below the list of children
+  const char *doc;    // what it does, above the options or children; behind a vertical tab what stands below
+  const char *ending; // of a group: below the list of children
 } AppCommand;
 
 // The group of all commands, borrowed: set once, as the program begins, for the commands that describe

@@ -54,10 +54,10 @@ static void print_pattern(FILE *stream, const AppCommand *command, const char *c
 
 // bash
 
-static void print_bash_option(void *self, const struct argp_option *option) {
+static void print_bash_option(void *self, const AppOption *option) {
   const Script *script = self;
   fprintf(script->stream, " --%s", option->name);
-  if (app_cli_options_has_letter(option)) fprintf(script->stream, " -%c", option->key);
+  if (option->letter) fprintf(script->stream, " -%c", option->letter);
 }
 
 static void print_bash_command(FILE *stream, const AppCommand *command, const char *called) {
@@ -69,9 +69,9 @@ static void print_bash_command(FILE *stream, const AppCommand *command, const ch
       fprintf(stream, "%s%s", child == command->children ? "" : " ", (*child)->name);
     fputs("'\n", stream);
   }
-  if (command->argp) {
+  if (!command->children) {
     fputs("      options='", stream);
-    app_cli_options_visit(command->argp, print_bash_option, &script);
+    app_cli_options_visit(command, print_bash_option, &script);
     fputs("'\n", stream);
   }
   fputs("      ;;\n", stream);
@@ -79,17 +79,17 @@ static void print_bash_command(FILE *stream, const AppCommand *command, const ch
 
 // What may stand behind an option: models; anything that is no file; files, which are what bash completes by
 // itself.
-static void print_bash_value(void *self, const struct argp_option *option) {
+static void print_bash_value(void *self, const AppOption *option) {
   const Script *script = self;
-  if (!option->arg || app_cli_options_takes_path(option)) return;
+  if (!option->argument || app_cli_options_takes_path(option)) return;
   fprintf(script->stream, "    '%s --%s'", script->called, option->name);
-  if (app_cli_options_has_letter(option)) fprintf(script->stream, " | '%s -%c'", script->called, option->key);
+  if (option->letter) fprintf(script->stream, " | '%s -%c'", script->called, option->letter);
   fputs(app_cli_options_takes_model(option) ? ") words=$models options= ;;\n" : ") return ;;\n",
         script->stream);
 }
 
 static void print_bash_values(FILE *stream, const AppCommand *command, const char *called) {
-  if (command->argp) app_cli_options_visit(command->argp, print_bash_value, &(Script){stream, called});
+  if (!command->children) app_cli_options_visit(command, print_bash_value, &(Script){stream, called});
 }
 
 static void print_bash(const AppCommand *program, FILE *stream) {
@@ -129,10 +129,10 @@ static void print_bash(const AppCommand *program, FILE *stream) {
 
 // zsh
 
-static void print_zsh_action(FILE *stream, const struct argp_option *option) {
-  if (!option->arg) return;
+static void print_zsh_action(FILE *stream, const AppOption *option) {
+  if (!option->argument) return;
   fputs(":", stream);
-  print_quoted(stream, option->arg, ":[]\\");
+  print_quoted(stream, option->argument, ":[]\\");
   if (app_cli_options_takes_path(option))
     fputs(":_files", stream);
   else if (app_cli_options_takes_model(option))
@@ -141,15 +141,15 @@ static void print_zsh_action(FILE *stream, const struct argp_option *option) {
     fputs(": ", stream);
 }
 
-static void print_zsh_option(void *self, const struct argp_option *option) {
+static void print_zsh_option(void *self, const AppOption *option) {
   const Script *script = self;
-  const char *equals = option->arg ? "=" : "";
-  if (app_cli_options_has_letter(option))
-    fprintf(script->stream, " \\\n        '(-%c --%s)'{-%c%s,--%s%s}'[", option->key, option->name,
-            option->key, option->arg ? "+" : "", option->name, equals);
+  const char *equals = option->argument ? "=" : "";
+  if (option->letter)
+    fprintf(script->stream, " \\\n        '(-%c --%s)'{-%c%s,--%s%s}'[", option->letter, option->name,
+            option->letter, option->argument ? "+" : "", option->name, equals);
   else
     fprintf(script->stream, " \\\n        '--%s%s[", option->name, equals);
-  print_quoted(script->stream, option->doc ? option->doc : "", "[]:\\");
+  print_quoted(script->stream, option->help, "[]:\\");
   fputs("]", script->stream);
   print_zsh_action(script->stream, option);
   fputs("'", script->stream);
@@ -167,7 +167,7 @@ static void print_zsh_command(FILE *stream, const AppCommand *command, const cha
     fprintf(stream, ")\n      _describe '%s' children\n", command->child_word);
   } else {
     fputs("      _arguments -s", stream);
-    app_cli_options_visit(command->argp, print_zsh_option, &(Script){stream, called});
+    app_cli_options_visit(command, print_zsh_option, &(Script){stream, called});
     fputs(" \\\n        '*:file:_files'\n", stream);
   }
   fputs("      ;;\n", stream);
@@ -214,18 +214,18 @@ static void print_fish_text(FILE *stream, const char *text) {
   for (; *text; text++) fprintf(stream, "%s%c", *text == '\'' || *text == '\\' ? "\\" : "", *text);
 }
 
-static void print_fish_option(void *self, const struct argp_option *option) {
+static void print_fish_option(void *self, const AppOption *option) {
   const Script *script = self;
   fprintf(script->stream, "complete -c tetlap -n '__tetlap_is \"%s\"' -l %s", script->called, option->name);
-  if (app_cli_options_has_letter(option)) fprintf(script->stream, " -s '%c'", option->key);
+  if (option->letter) fprintf(script->stream, " -s '%c'", option->letter);
   if (app_cli_options_takes_model(option)) {
     fputs(" -x -a '", script->stream);
     print_models(script->stream);
     fputs("'", script->stream);
-  } else if (option->arg)
+  } else if (option->argument)
     fputs(app_cli_options_takes_path(option) ? " -r -F" : " -x", script->stream);
   fputs(" -d '", script->stream);
-  print_fish_text(script->stream, option->doc ? option->doc : "");
+  print_fish_text(script->stream, option->help);
   fputs("'\n", script->stream);
 }
 
@@ -235,7 +235,7 @@ static void print_fish_command(FILE *stream, const AppCommand *command, const ch
     print_fish_text(stream, (*child)->help);
     fputs("'\n", stream);
   }
-  if (command->argp) app_cli_options_visit(command->argp, print_fish_option, &(Script){stream, called});
+  if (!command->children) app_cli_options_visit(command, print_fish_option, &(Script){stream, called});
 }
 
 static void print_fish(const AppCommand *program, FILE *stream) {

@@ -56,7 +56,7 @@ static void put_head(FILE *stream, const AppCommand *command, const char *called
 
 // A usage line for each line of what argp calls the arguments.
 static void put_synopsis(FILE *stream, const AppCommand *command, const char *called) {
-  const char *rest = command->argp && command->argp->args_doc ? command->argp->args_doc : "";
+  const char *rest = command->arguments && command->arguments->name ? command->arguments->name : "";
   fputs(".SH SYNOPSIS\n", stream);
   do {
     size_t length = strcspn(rest, "\n");
@@ -87,20 +87,20 @@ static void put_description(FILE *stream, const char *doc) {
   fputs("\n", stream);
 }
 
-static void put_option(void *stream_pointer, const struct argp_option *option) {
+static void put_option(void *stream_pointer, const AppOption *option) {
   FILE *stream = stream_pointer;
   fputs(".TP\n", stream);
-  if (app_cli_options_has_letter(option)) fprintf(stream, "\\fB\\-%c\\fR, ", option->key);
+  if (option->letter) fprintf(stream, "\\fB\\-%c\\fR, ", option->letter);
   fputs("\\fB\\-\\-", stream);
   put_literal(stream, option->name);
   fputs("\\fR", stream);
-  if (option->arg) {
-    fputs(option->flags & OPTION_ARG_OPTIONAL ? "[=\\fI" : "=\\fI", stream);
-    put(stream, option->arg);
-    fputs(option->flags & OPTION_ARG_OPTIONAL ? "\\fR]" : "\\fR", stream);
+  if (option->argument) {
+    fputs("=\\fI", stream);
+    put(stream, option->argument);
+    fputs("\\fR", stream);
   }
   fputs("\n", stream);
-  put(stream, option->doc ? option->doc : "");
+  put(stream, option->help);
   fputs("\n", stream);
 }
 
@@ -156,11 +156,11 @@ static void put_end(FILE *stream, const char *called) {
 Status app_cli_manual_print(const AppCommand *command, const char *called, FILE *stream) {
   put_head(stream, command, called);
   put_synopsis(stream, command, called);
-  put_description(stream, command->argp ? command->argp->doc : command->doc);
+  put_description(stream, command->doc);
   if (command->children) put_children(stream, command, called);
-  if (command->argp) {
+  if (!command->children) {
     fputs(".SH OPTIONS\n", stream);
-    app_cli_options_visit(command->argp, put_option, stream);
+    app_cli_options_visit(command, put_option, stream);
   }
   TRY(put_rows(stream, command));
   put_end(stream, called);

@@ -4,22 +4,20 @@
 #ifndef TETLAP_APP_CLI_OPTIONS_H
 #define TETLAP_APP_CLI_OPTIONS_H
 
-#include <argp.h>
 #include <stdbool.h>
 
-typedef void (*AppCliOptionVisit)(void *self, const struct argp_option *option);
+#include "app/cli/command.h"
 
-// Calls `visit` for each option of the command, then of the tables that it shares with others, then --help
-// and --usage.
-void app_cli_options_visit(const struct argp *argp, AppCliOptionVisit visit, void *self);
+typedef void (*AppCliOptionVisit)(void *self, const AppOption *option);
 
-// Whether the option's key is a letter, as in -o.
-bool app_cli_options_has_letter(const struct argp_option *option);
+// Calls `visit` for each option of the command, also of the tables that it shares with others, then for
+// --help and --usage.
+void app_cli_options_visit(const AppCommand *command, AppCliOptionVisit visit, void *self);
 
 // Whether its argument is the name of a file or a folder.
-bool app_cli_options_takes_path(const struct argp_option *option);
+bool app_cli_options_takes_path(const AppOption *option);
 
 // Whether its argument names overlap models.
-bool app_cli_options_takes_model(const struct argp_option *option);
+bool app_cli_options_takes_model(const AppOption *option);
 
 #endif

@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/cli/argument.h"
 #include "app/cli/format.h"
 #include "app/cli/versions.h"
 #include "app/job/inputs.h"
@@ -31,59 +30,32 @@ static void raise_flag(int signal_number) {
   stop_flag = 1;
 }
 
-enum { KEY_PROGRESS = 600 };
+static void read_progress(struct argp_state *state, void *is_json, char *text) {
+  if (strcmp(text, "json") != 0) argp_error(state, "--progress %s: the only form is json", text);
+  *(bool *)is_json = true;
+}
 
-static const struct argp_option option_table[] = {
-    {"output", 'o', "DIR", 0, "Write into DIR (default: out/ and the scene's name)", 1},
-    {"set", 's', "KEY=VALUE", 0, "Replace a value of the scene, as in contact.stiffness=1e6; may be repeated",
-     1},
-    {"threads", 't', "N", 0, "Use N threads (default: the scene's, else all)", 1},
-    {"json", 'j', NULL, 0, "Print the result as JSON on standard output", 2},
-    {"progress", KEY_PROGRESS, "json", 0, "Progress as a line of JSON twice a second, on standard error", 2},
-    {"quiet", 'q', NULL, 0, "Say nothing but errors", 2},
-    {"verbose", 'v', NULL, 0, "Print a line per step, and why one is taken back", 2},
+const AppOption app_job_options[] = {
+    {"output", 'o', "DIR", "Write into DIR (default: out/ and the scene's name)", 1, CLI_TEXT,
+     CLI_TO(AppJobOptions, directory)},
+    {"set", 's', "KEY=VALUE", "Replace a value of the scene, as in contact.stiffness=1e6; may be repeated", 1,
+     CLI_REPEATED, CLI_TO(AppJobOptions, overrides), .most = APP_MAX_OVERRIDES, .example = "--set",
+     .count_offset = offsetof(AppJobOptions, override_count)},
+    {"threads", 't', "N", "Use N threads (default: the scene's, else all)", 1, CLI_INTEGER,
+     CLI_TO(AppJobOptions, threads), 1, APP_CLI_MOST_THREADS},
+    {"json", 'j', NULL, "Print the result as JSON on standard output", 2, CLI_FLAG,
+     CLI_TO(AppJobOptions, is_json)},
+    {"progress", 0, "json", "Progress as a line of JSON twice a second, on standard error", 2, CLI_OWN,
+     CLI_TO(AppJobOptions, is_progress_json), .read = read_progress},
+    {"quiet", 'q', NULL, "Say nothing but errors", 2, CLI_FLAG, CLI_TO(AppJobOptions, is_quiet)},
+    {"verbose", 'v', NULL, "Print a line per step, and why one is taken back", 2, CLI_FLAG,
+     CLI_TO(AppJobOptions, is_verbose)},
     {0},
 };
 
-static error_t parse(int key, char *text, struct argp_state *state) {
-  AppJobOptions *options = state->input;
-  switch (key) {
-  case 'o':
-    options->directory = text;
-    break;
-  case 't':
-    options->threads = app_argument_threads(state, text);
-    break;
-  case 'j':
-    options->is_json = true;
-    break;
-  case KEY_PROGRESS:
-    if (strcmp(text, "json") != 0) argp_error(state, "--progress %s: the only form is json", text);
-    options->is_progress_json = true;
-    break;
-  case 'q':
-    options->is_quiet = true;
-    break;
-  case 'v':
-    options->is_verbose = true;
-    break;
-  case 's':
-    app_argument_add(state, "--set", text, APP_MAX_OVERRIDES, options->overrides, &options->override_count);
-    break;
-  case ARGP_KEY_ARG:
-    if (options->scene_path) argp_error(state, "one scene at a time; '%s' is the second", text);
-    options->scene_path = text;
-    break;
-  case ARGP_KEY_END:
-    if (!options->scene_path) argp_error(state, "name a scene file, as in examples/01_drop.yaml");
-    break;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-  return 0;
-}
-
-const struct argp app_job_argp = {.options = option_table, .parser = parse};
+const AppArguments app_job_scene = {"SCENE", offsetof(AppJobOptions, scene_path), 1,
+                                    .missing = "name a scene file, as in examples/01_drop.yaml",
+                                    .excess = "one scene at a time; '%s' is the second"};
 
 void app_job_prepare(const AppJobOptions *options) {
   log_set_level(options->is_quiet ? LOG_ERROR : options->is_verbose ? LOG_DEBUG : LOG_INFO);

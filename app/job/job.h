@@ -4,10 +4,10 @@
 #ifndef TETLAP_APP_JOB_JOB_H
 #define TETLAP_APP_JOB_JOB_H
 
-#include <argp.h>
 #include <stdbool.h>
 
 #include "app/cli/model_names.h"
+#include "app/cli/option.h"
 #include "base/files/record.h"
 #include "base/log.h"
 #include "fem/model/model.h"
@@ -26,9 +26,10 @@ typedef struct AppJobOptions {
   bool is_progress_json; // progress as a line of JSON each
 } AppJobOptions;
 
-// The options -o, --set, --threads, -q, -v, --json and the argument SCENE, as an argp child; its input is
-// AppJobOptions.
-extern const struct argp app_job_argp;
+// The options -o, --set, --threads, --progress, -q, -v and --json, and the argument SCENE of a command whose
+// own struct begins with an AppJobOptions.
+extern const AppOption app_job_options[];
+extern const AppArguments app_job_scene;
 
 typedef struct AppJob {
   FemSceneDef scene;

@@ -5,14 +5,13 @@
 #include <math.h>
 #include <omp.h>
 #include <stdbool.h>
-#include <string.h>
 
 #include "app/bench/overlap/errors.h"
 #include "app/bench/overlap/pairs.h"
 #include "app/bench/report.h"
 #include "app/bench/timer.h"
-#include "app/cli/argument.h"
 #include "app/cli/model_names.h"
+#include "app/cli/parse.h"
 #include "app/evaluation/card.h"
 #include "base/clock.h"
 #include "base/log.h"
@@ -30,14 +29,20 @@ typedef struct Options {
   int model_count;
   bool are_chosen; // by --model
   bool wants_set[APP_BENCH_SET_COUNT], wants_quantity[QUANTITY_COUNT];
-  int batches[APP_BENCH_MAX_LIST], batch_count;
+  AppBenchList batches;
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"model", 'm', "NAME,...", 0, "Overlap models, or files of yours, to measure (default: all models)", 1},
-    {"set", 's', "NAME,...", 0, "Sets of pairs: near, uniform, disjoint (default: all)", 1},
-    {"quantity", 'Q', "NAME,...", 0, "V, V+centroid, V+grad, V+grad+hess (default: all that a model has)", 1},
-    {"batch", 'b', "N,...", 0, "Pairs a call (default: 4096); slow models get fewer", 1},
+static const AppOption option_table[] = {
+    {"model", 'm', "NAME,...", "Overlap models, or files of yours, to measure (default: all models)", 1,
+     CLI_LIST, CLI_TO(Options, models), .most = MAX_MODELS, .example = "clip,geo",
+     .count_offset = offsetof(Options, model_count), .mark_offset = offsetof(Options, are_chosen)},
+    {"set", 's', "NAME,...", "Sets of pairs: near, uniform, disjoint (default: all)", 1, CLI_CHOICES,
+     CLI_TO(Options, wants_set), .most = APP_BENCH_SET_COUNT, .choices = app_bench_sets},
+    {"quantity", 'Q', "NAME,...", "V, V+centroid, V+grad, V+grad+hess (default: all that a model has)", 1,
+     CLI_CHOICES, CLI_TO(Options, wants_quantity), .most = QUANTITY_COUNT, .choices = quantities},
+    {"batch", 'b', "N,...", "Pairs a call (default: 4096); slow models get fewer", 1, CLI_OWN,
+     CLI_TO(Options, batches), .read = app_bench_options_read_batches},
+    {.table = app_bench_options, .offset = offsetof(Options, common)},
     {0},
 };
 
@@ -46,30 +51,6 @@ static int list_models(const char *names[MAX_MODELS]) {
   const OverlapOps *const *models = overlap_model_list(&count);
   for (int m = 0; m < count; m++) names[m] = models[m]->name;
   return count;
-}
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &options->common;
-    return 0;
-  case 'm':
-    options->are_chosen = true;
-    options->model_count = app_argument_list(state, "model", text, "clip,geo", MAX_MODELS, options->models);
-    return 0;
-  case 's':
-    app_bench_options_choose(state, "set", text, app_bench_sets, APP_BENCH_SET_COUNT, options->wants_set);
-    return 0;
-  case 'Q':
-    app_bench_options_choose(state, "quantity", text, quantities, QUANTITY_COUNT, options->wants_quantity);
-    return 0;
-  case 'b':
-    options->batch_count = app_bench_options_counts(state, "batch", text, 10000000, options->batches);
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
 }
 
 // A model that evaluates a batch of pairs repeatedly.
@@ -159,7 +140,7 @@ static Status open_models(Bench *bench) {
 
 static void add(Bench *bench, const Case *what) {
   const OverlapModel *model = &bench->models[what->model];
-  int batch = bench->options->batches[what->batch];
+  int batch = bench->options->batches.numbers[what->batch];
   bool has_hessian = what->quantity == HESSIAN, has_gradient = has_hessian || what->quantity == GRADIENT;
   bench->cases[bench->count] = *what;
   bench->contestants[bench->count++] =
@@ -199,9 +180,9 @@ static Status add_contestants(Bench *bench) {
   for (what.set = 0; what.set < APP_BENCH_SET_COUNT; what.set++)
     for (what.quantity = 0; what.quantity < QUANTITY_COUNT; what.quantity++) {
       if (!options->wants_set[what.set] || !options->wants_quantity[what.quantity]) continue;
-      for (what.batch = 0; what.batch < options->batch_count; what.batch++)
-        for (int t = 0; t < options->common.thread_list_count; t++) {
-          what.threads = options->common.thread_list[t];
+      for (what.batch = 0; what.batch < options->batches.count; what.batch++)
+        for (int t = 0; t < options->common.thread_list.count; t++) {
+          what.threads = options->common.thread_list.numbers[t];
           add_models(bench, what);
         }
     }
@@ -211,18 +192,12 @@ static Status add_contestants(Bench *bench) {
   return STATUS_OK;
 }
 
-static int largest_of(const int *numbers, int count) {
-  int largest = numbers[0];
-  for (int i = 1; i < count; i++) largest = numbers[i] > largest ? numbers[i] : largest;
-  return largest;
-}
-
 static Status make_inputs(Bench *bench) {
   const Options *options = bench->options;
-  int most = largest_of(options->batches, options->batch_count);
+  int most = app_bench_list_largest(&options->batches);
   size_t batch = (size_t)most, pair = OVERLAP_PAIR_SIZE;
-  bench->capacity = APP_BENCH_SET_COUNT * QUANTITY_COUNT * MAX_MODELS * options->batch_count *
-                    options->common.thread_list_count;
+  bench->capacity = APP_BENCH_SET_COUNT * QUANTITY_COUNT * MAX_MODELS * options->batches.count *
+                    options->common.thread_list.count;
   bench->contestants = memory_zeroed((size_t)bench->capacity, sizeof *bench->contestants);
   bench->cases = memory_zeroed((size_t)bench->capacity, sizeof *bench->cases);
   bench->volume = memory_zeroed(batch, sizeof *bench->volume);
@@ -327,7 +302,7 @@ static Row row_of(const Bench *bench, int c) {
   const Case *what = &bench->cases[c];
   int rounds = bench->options->common.repeats;
   Case single = *what;
-  single.threads = bench->options->common.thread_list[0];
+  single.threads = bench->options->common.thread_list.numbers[0];
   const int first = find_reference(bench, *what);
   const Contestant *reference = &bench->contestants[first],
                    *narrow = &bench->contestants[find(bench, single)];
@@ -402,7 +377,7 @@ static void destroy(Bench *bench) {
 static Status measure(Bench *bench) {
   const AppBenchOptions *common = &bench->options->common;
   // what models keep for every thread is made for the largest number of them
-  omp_set_num_threads(largest_of(common->thread_list, common->thread_list_count));
+  omp_set_num_threads(app_bench_list_largest(&common->thread_list));
   TRY(open_models(bench));
   TRY(make_inputs(bench));
   TRY(add_contestants(bench));
@@ -420,27 +395,22 @@ static Status run(const Options *options) {
   return status;
 }
 
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .doc = "Measure how many pairs of tetrahedra a second the overlap models answer, and how accurately.",
-    .children = app_bench_report_children,
-    .help_filter = app_bench_report_help};
-
 static int run_command(int argument_count, char **arguments) {
-  Options options = {.common = app_bench_options_default(9), .batches = {4096}, .batch_count = 1};
+  Options options = {.common = app_bench_options_default(9), .batches = {{4096}, 1}};
   options.common.takes_thread_list = true;
   options.model_count = list_models(options.models);
   for (int i = 0; i < APP_BENCH_SET_COUNT; i++) options.wants_set[i] = true;
   for (int i = 0; i < QUANTITY_COUNT; i++) options.wants_quantity[i] = true;
-  app_bench_report_read(&app_bench_overlap, argument_count, arguments, &options);
+  app_cli_parse(&app_bench_overlap, argument_count, arguments, &options);
   return app_cli_command_end(run(&options));
 }
 
-const AppCommand app_bench_overlap = {.name = "overlap",
-                                      .help = "overlap models: pairs of tetrahedra a second",
-                                      .argp = &argp,
-                                      .run = run_command,
-                                      .has_threads = true,
-                                      .rows = &report,
-                                      .describe_rows = app_bench_report_describe};
+const AppCommand app_bench_overlap = {
+    .name = "overlap",
+    .help = "overlap models: pairs of tetrahedra a second",
+    .options = option_table,
+    .doc = "Measure how many pairs of tetrahedra a second the overlap models answer, and how accurately.",
+    .run = run_command,
+    .has_threads = true,
+    .rows = &report,
+    .describe_rows = app_bench_report_describe};

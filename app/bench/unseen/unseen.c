@@ -8,6 +8,7 @@
 #include "app/bench/timer.h"
 #include "app/bench/unseen/path.h"
 #include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "base/log.h"
 #include "base/memory.h"
 
@@ -21,46 +22,26 @@ typedef struct Options {
   int seeds, places;
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"model", 'm', "NAME,...", 0, "Overlap models, or files of yours, to measure (default: geo,geo-small)",
-     1},
-    {"case", 'k', "NAME,...", 0,
+static void read_cases(struct argp_state *state, void *wanted, char *text) {
+  const char *names[MAX_CASES];
+  for (int c = 0; c < app_unseen_case_count; c++) names[c] = app_unseen_cases[c].name;
+  app_argument_choose(state, "case", text, names, app_unseen_case_count, wanted);
+}
+
+static const AppOption option_table[] = {
+    {"model", 'm', "NAME,...", "Overlap models, or files of yours, to measure (default: geo,geo-small)", 1,
+     CLI_LIST, CLI_TO(Options, models), .most = MAX_MODELS, .example = "geo,clip32",
+     .count_offset = offsetof(Options, model_count)},
+    {"case", 'k', "NAME,...",
      "Cases: jittered, aligned, five, graded, slivers, strained, fine, thin, edge, made, adapted "
      "(default: all)",
-     1},
-    {"seeds", 's', "N", 0, "Meshes of each case (default: 3)", 1},
-    {"places", 'p', "N", 0, "Places of each path (default: 96)", 1},
+     1, CLI_OWN, CLI_TO(Options, wants_case), .read = read_cases},
+    {"seeds", 's', "N", "Meshes of each case (default: 3)", 1, CLI_INTEGER, CLI_TO(Options, seeds), 1, 1000},
+    {"places", 'p', "N", "Places of each path (default: 96)", 1, CLI_INTEGER, CLI_TO(Options, places), 8,
+     100000},
+    {.table = app_bench_options, .offset = offsetof(Options, common)},
     {0},
 };
-
-static int list_cases(const char *names[MAX_CASES]) {
-  for (int c = 0; c < app_unseen_case_count; c++) names[c] = app_unseen_cases[c].name;
-  return app_unseen_case_count;
-}
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  const char *names[MAX_CASES];
-  switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &options->common;
-    return 0;
-  case 'm':
-    options->model_count = app_argument_list(state, "model", text, "geo,clip32", MAX_MODELS, options->models);
-    return 0;
-  case 'k':
-    app_bench_options_choose(state, "case", text, names, list_cases(names), options->wants_case);
-    return 0;
-  case 's':
-    options->seeds = (int)app_argument_integer(state, "seeds", text, 1, 1000);
-    return 0;
-  case 'p':
-    options->places = (int)app_argument_integer(state, "places", text, 8, 100000);
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
 
 typedef struct Row {
   const char *model, *what;
@@ -167,18 +148,6 @@ static Status run(const Options *options) {
   return status ? status : app_bench_report_print(&report, &options->common, rows, count);
 }
 
-static const struct argp argp = {.options = option_table,
-                                 .parser = parse,
-                                 .doc = "Measure overlap models on bodies that no training has seen: meshes "
-                                        "of other makers and gradings, slivers, "
-                                        "large strain, thin parts, edges, aligned slabs. The upper body goes "
-                                        "round a closed path in contact, and "
-                                        "at each place volumes, centroids and forces are compared with those "
-                                        "of clipping. Errors are the largest "
-                                        "over the seeds.",
-                                 .children = app_bench_report_children,
-                                 .help_filter = app_bench_report_help};
-
 static int run_command(int argument_count, char **arguments) {
   Options options = {.common = {.threads = 1, .repeats = 1},
                      .models = {"geo", "geo-small"},
@@ -186,14 +155,22 @@ static int run_command(int argument_count, char **arguments) {
                      .seeds = 3,
                      .places = 96};
   for (int c = 0; c < app_unseen_case_count; c++) options.wants_case[c] = true;
-  app_bench_report_read(&app_bench_unseen, argument_count, arguments, &options);
+  app_cli_parse(&app_bench_unseen, argument_count, arguments, &options);
   return app_cli_command_end(run(&options));
 }
 
-const AppCommand app_bench_unseen = {.name = "unseen",
-                                     .help = "overlap models: errors on bodies that no training has seen",
-                                     .argp = &argp,
-                                     .run = run_command,
-                                     .has_threads = true,
-                                     .rows = &report,
-                                     .describe_rows = app_bench_report_describe};
+const AppCommand app_bench_unseen = {
+    .name = "unseen",
+    .help = "overlap models: errors on bodies that no training has seen",
+    .options = option_table,
+    .doc = "Measure overlap models on bodies that no training has seen: meshes "
+           "of other makers and gradings, slivers, "
+           "large strain, thin parts, edges, aligned slabs. The upper body goes "
+           "round a closed path in contact, and "
+           "at each place volumes, centroids and forces are compared with those "
+           "of clipping. Errors are the largest "
+           "over the seeds.",
+    .run = run_command,
+    .has_threads = true,
+    .rows = &report,
+    .describe_rows = app_bench_report_describe};

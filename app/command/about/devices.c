@@ -3,31 +3,15 @@
 
 #include <stdio.h>
 
+#include "app/cli/parse.h"
 #include "base/files/record.h"
 #include "base/status.h"
 #include "device/device.h"
 
-static error_t parse(int key, char *text, struct argp_state *state) {
-  bool *is_json = state->input;
-  switch (key) {
-  case 'j':
-    *is_json = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    argp_error(state, "'%s' is one argument too many: devices takes no arguments", text);
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
-
-static const struct argp_option option_table[] = {{"json", 'j', NULL, 0, "Print JSON", 0}, {0}};
-
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .doc = "List the devices that overlap models can be evaluated on (bench overlap --device NAME), the "
-           "libraries searched, and why something is not usable."};
+static const AppOption option_table[] = {
+    {"json", 'j', NULL, "Print JSON", 0, CLI_FLAG, .size = sizeof(bool)},
+    {0},
+};
 
 static void print_device(const DeviceOps *ops, const DeviceInfo *info) {
   printf("  %s:%d  %s (%s)\n      %s, %d units", ops->name, info->index, info->name, info->driver,
@@ -88,11 +72,14 @@ static Status list_devices(bool is_json) {
 
 static int run_command(int argument_count, char **arguments) {
   bool is_json = false;
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &is_json);
+  app_cli_parse(&app_command_devices, argument_count, arguments, &is_json);
   return app_cli_command_end(list_devices(is_json));
 }
 
-const AppCommand app_command_devices = {.name = "devices",
-                                        .help = "list accelerators, and why one is not usable",
-                                        .argp = &argp,
-                                        .run = run_command};
+const AppCommand app_command_devices = {
+    .name = "devices",
+    .help = "list accelerators, and why one is not usable",
+    .options = option_table,
+    .doc = "List the devices that overlap models can be evaluated on (bench overlap --device NAME), the "
+           "libraries searched, and why something is not usable.",
+    .run = run_command};

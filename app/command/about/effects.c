@@ -3,16 +3,11 @@
 
 #include <stdio.h>
 
+#include "app/cli/parse.h"
 #include "app/scene/keys/keys.h"
 #include "base/log.h"
 #include "base/status.h"
 #include "fem/effect/effect.h"
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  if (key != ARGP_KEY_ARG) return ARGP_ERR_UNKNOWN;
-  argp_error(state, "'%s' is one argument too many: effects takes no arguments", text);
-  return 0;
-}
 
 // Every key of the table that takes a name, with what there is to choose from.
 static void print_choices(const SceneSection *section, const char *above) {
@@ -28,11 +23,8 @@ static void print_choices(const SceneSection *section, const char *above) {
   }
 }
 
-static const struct argp argp = {.parser = parse,
-                                 .doc = "List the effects, and the names that a scene's keys choose from."};
-
 static int run_command(int argument_count, char **arguments) {
-  argp_parse(&argp, argument_count, arguments, 0, NULL, NULL);
+  app_cli_parse(&app_command_effects, argument_count, arguments, NULL);
   int count;
   const FemEffectOps *const *effects = fem_effect_list(&count);
   puts("effects:");
@@ -43,7 +35,8 @@ static int run_command(int argument_count, char **arguments) {
   return status_exit_code(STATUS_IO);
 }
 
-const AppCommand app_command_effects = {.name = "effects",
-                                        .help = "list effects, materials, potentials, models and solvers",
-                                        .argp = &argp,
-                                        .run = run_command};
+const AppCommand app_command_effects = {
+    .name = "effects",
+    .help = "list effects, materials, potentials, models and solvers",
+    .doc = "List the effects, and the names that a scene's keys choose from.",
+    .run = run_command};

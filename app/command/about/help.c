@@ -2,9 +2,10 @@
 #include "app/command/about/help.h"
 
 #include "app/cli/manual.h"
+#include "app/cli/parse.h"
 #include "base/text.h"
 
-enum { KEY_MAN = 256, MOST_WORDS = 8, MOST_MESSAGE = 1024 };
+enum { MOST_WORDS = 8, MOST_MESSAGE = 1024 };
 
 typedef struct Options {
   const char *directory; // for manual pages; NULL: one page on standard output
@@ -13,33 +14,12 @@ typedef struct Options {
   int word_count;
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"man", KEY_MAN, NULL, 0, "Print the command's page for man(1)", 0},
-    {"output", 'o', "DIR", 0, "With --man: write the page and those of the commands below it into DIR", 0},
+static const AppOption option_table[] = {
+    {"man", 0, NULL, "Print the command's page for man(1)", 0, CLI_FLAG, CLI_TO(Options, wants_page)},
+    {"output", 'o', "DIR", "With --man: write the page and those of the commands below it into DIR", 0,
+     CLI_TEXT, CLI_TO(Options, directory)},
     {0},
 };
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case KEY_MAN:
-    options->wants_page = true;
-    return 0;
-  case 'o':
-    options->directory = text;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (options->word_count == MOST_WORDS) argp_error(state, "'%s' is one word too many", text);
-    options->words[options->word_count++] = text;
-    return 0;
-  case ARGP_KEY_END:
-    if (options->directory && !options->wants_page)
-      argp_error(state, "-o is for manual pages: --man -o %s", options->directory);
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
 
 // The command that the words name, and how it is called.
 static const AppCommand *find(const Options *options, char called[APP_CLI_MAX_CALL]) {
@@ -75,14 +55,15 @@ static int ask(const AppCommand *command, char called[APP_CLI_MAX_CALL]) {
   return app_cli_command_run(command, 2, asking);
 }
 
-static const struct argp argp = {.options = option_table,
-                                 .parser = parse,
-                                 .args_doc = "[COMMAND…]",
-                                 .doc = "List the commands, or describe one of them."};
+static void check(struct argp_state *state, void *given) {
+  const Options *options = given;
+  if (options->directory && !options->wants_page)
+    argp_error(state, "-o is for manual pages: --man -o %s", options->directory);
+}
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_help, argument_count, arguments, &options);
   char called[APP_CLI_MAX_CALL];
   const AppCommand *command = find(&options, called);
   if (!command) return app_cli_command_end(STATUS_USAGE);
@@ -93,4 +74,11 @@ static int run_command(int argument_count, char **arguments) {
 }
 
 const AppCommand app_command_help = {
-    .name = "help", .help = "print this; `help COMMAND` has the details", .argp = &argp, .run = run_command};
+    .name = "help",
+    .help = "print this; `help COMMAND` has the details",
+    .options = option_table,
+    .arguments = &(const AppArguments){"[COMMAND…]", offsetof(Options, words), MOST_WORDS,
+                                       offsetof(Options, word_count), .excess = "'%s' is one word too many"},
+    .doc = "List the commands, or describe one of them.",
+    .check = check,
+    .run = run_command};

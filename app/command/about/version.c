@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/about/version.h"
 
+#include "app/cli/parse.h"
 #include "app/cli/versions.h"
 #include "base/files/record.h"
 #include "base/status.h"
 
-static const struct argp argp = {.doc = "Print the versions of the program and its libraries, as JSON."};
-
 static int run_command(int argument_count, char **arguments) {
-  argp_parse(&argp, argument_count, arguments, 0, NULL, NULL);
+  app_cli_parse(&app_command_version, argument_count, arguments, NULL);
   Record *versions = record_new();
   Status status = versions ? STATUS_OK : status_no_memory("the versions");
   if (!status) {
@@ -21,5 +20,6 @@ static int run_command(int argument_count, char **arguments) {
 
 const AppCommand app_command_version = {.name = "version",
                                         .help = "print the versions of the program and its libraries",
-                                        .argp = &argp,
+                                        .doc =
+                                            "Print the versions of the program and its libraries, as JSON.",
                                         .run = run_command};

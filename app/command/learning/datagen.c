@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/learning/datagen.h"
 
-#include <limits.h>
 #include <math.h>
 #include <omp.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "app/cli/versions.h"
 #include "app/job/job.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "datagen/run.h"
 
-enum { KEY_MIX = 256, KEY_VOLUME, KEY_SWAP, KEY_GRADIENT, KEY_LABEL, KEY_SHARD, KEY_LIST, BAR_WIDTH = 24 };
+enum { BAR_WIDTH = 24 };
+
+typedef struct Shard {
+  int number, count; // number from 1
+} Shard;
 
 typedef struct Options {
   DatagenLaw law;
@@ -25,26 +28,9 @@ typedef struct Options {
   uint64_t seed;
   DatagenLabel label;
   bool has_label, wants_gradient, is_quiet, lists;
-  int shard, shard_count, threads; // 0 threads: all
+  Shard shard;
+  int threads; // 0: all
 } Options;
-
-static const struct argp_option option_table[] = {
-    {"law", 'l', "NAME", 0, "What the pairs are: paper-train (default), paper-test, scene, uniform", 0},
-    {"count", 'n', "N", 0, "Pairs in all (default: the law's)", 0},
-    {"seed", 's', "S", 0, "A number; the same gives the same pairs (default: 1)", 0},
-    {"output", 'o', "FILE", 0, "The HDF5 file to write", 0},
-    {"threads", 't', "N", 0, "Threads (default: all); the pairs do not depend on it", 0},
-    {"shard", KEY_SHARD, "I/N", 0, "Make part I of N only, I from 1; `tetlap dataset merge` joins them", 0},
-    {"gradient", KEY_GRADIENT, "MODEL", 0, "Also the 24 derivatives of V: none (default), clip, exact", 0},
-    {"label", KEY_LABEL, "MODEL", 0, "What V is computed with: exact (default), clip", 0},
-    {"mix", KEY_MIX, "KIND=SHARE,...", 0, "Shares of the kinds, instead of the law's", 0},
-    {"volume", KEY_VOLUME, "LAW", 0,
-     "Law of the volumetric pairs' V: log-uniform:LOW:HIGH, uniform:LOW:HIGH, natural", 0},
-    {"swap", KEY_SWAP, "SHARE", 0, "Exchange the two tetrahedra in this share of the pairs (default: 0)", 0},
-    {"list", KEY_LIST, NULL, 0, "List laws and kinds", 0},
-    {"quiet", 'q', NULL, 0, "Say errors only", 0},
-    {0},
-};
 
 static DatagenLabel model_of(struct argp_state *state, const char *option, const char *text) {
   if (strcmp(text, "exact") == 0) return DATAGEN_LABEL_EXACT;
@@ -62,66 +48,53 @@ static void set_label(struct argp_state *state, Options *options, const char *op
   options->has_label = true;
 }
 
-static void set_shard(struct argp_state *state, Options *options, const char *text) {
+static void read_gradient(struct argp_state *state, void *options, char *text) {
+  ((Options *)options)->wants_gradient = strcmp(text, "none") != 0;
+  if (((Options *)options)->wants_gradient) set_label(state, options, "gradient", text);
+}
+
+static void read_label(struct argp_state *state, void *options, char *text) {
+  set_label(state, options, "label", text);
+}
+
+static void read_law(struct argp_state *state, void *law, char *text) {
+  if (datagen_law_find(text, law) != STATUS_OK) argp_error(state, "%s", status_message());
+}
+
+static void read_shard(struct argp_state *state, void *member, char *text) {
+  Shard *shard = member;
   int used = 0;
-  if (sscanf(text, "%d/%d%n", &options->shard, &options->shard_count, &used) != 2 || text[used] ||
-      options->shard < 1 || options->shard > options->shard_count || options->shard_count > 1000000)
+  if (sscanf(text, "%d/%d%n", &shard->number, &shard->count, &used) != 2 || text[used] || shard->number < 1 ||
+      shard->number > shard->count || shard->count > 1000000)
     argp_error(state, "--shard is '%s'; give I/N with I from 1 to N, as in 3/16", text);
 }
 
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case 'l':
-    if (datagen_law_find(text, &options->law) != STATUS_OK) argp_error(state, "%s", status_message());
-    return 0;
-  case 'n':
-    options->count = app_argument_integer(state, "count", text, 1, LLONG_MAX);
-    return 0;
-  case 's':
-    options->seed = app_argument_seed(state, text);
-    return 0;
-  case 'o':
-    options->output = text;
-    return 0;
-  case 't':
-    options->threads = app_argument_threads(state, text);
-    return 0;
-  case 'q':
-    options->is_quiet = true;
-    return 0;
-  case KEY_SHARD:
-    set_shard(state, options, text);
-    return 0;
-  case KEY_GRADIENT:
-    options->wants_gradient = strcmp(text, "none") != 0;
-    if (options->wants_gradient) set_label(state, options, "gradient", text);
-    return 0;
-  case KEY_LABEL:
-    set_label(state, options, "label", text);
-    return 0;
-  case KEY_MIX:
-    options->mix = app_argument_words(state, "mix", text, "none=50,volumetric=50");
-    return 0;
-  case KEY_VOLUME:
-    options->volume = text;
-    return 0;
-  case KEY_SWAP:
-    options->swap_share = app_argument_number(state, "swap", text, 0, 1);
-    return 0;
-  case KEY_LIST:
-    options->lists = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    argp_error(state, "'%s' is one argument too many: the file to write is given with -o", text);
-    return 0;
-  case ARGP_KEY_END:
-    if (!options->output && !options->lists) argp_error(state, "name the file to write, as in -o pairs.h5");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
+static const AppOption option_table[] = {
+    {"law", 'l', "NAME", "What the pairs are: paper-train (default), paper-test, scene, uniform", 0, CLI_OWN,
+     CLI_TO(Options, law), .read = read_law},
+    {"count", 'n', "N", "Pairs in all (default: the law's)", 0, CLI_INTEGER, CLI_TO(Options, count), 1,
+     INFINITY},
+    {"seed", 's', "S", "A number; the same gives the same pairs (default: 1)", 0, CLI_SEED,
+     CLI_TO(Options, seed)},
+    {"output", 'o', "FILE", "The HDF5 file to write", 0, CLI_TEXT, CLI_TO(Options, output)},
+    {"threads", 't', "N", "Threads (default: all); the pairs do not depend on it", 0, CLI_INTEGER,
+     CLI_TO(Options, threads), 1, APP_CLI_MOST_THREADS},
+    {"shard", 0, "I/N", "Make part I of N only, I from 1; `tetlap dataset merge` joins them", 0, CLI_OWN,
+     CLI_TO(Options, shard), .read = read_shard},
+    {"gradient", 0, "MODEL", "Also the 24 derivatives of V: none (default), clip, exact", 0, CLI_OWN,
+     .size = sizeof(Options), .read = read_gradient},
+    {"label", 0, "MODEL", "What V is computed with: exact (default), clip", 0, CLI_OWN,
+     .size = sizeof(Options), .read = read_label},
+    {"mix", 0, "KIND=SHARE,...", "Shares of the kinds, instead of the law's", 0, CLI_WORDS,
+     CLI_TO(Options, mix), .example = "none=50,volumetric=50"},
+    {"volume", 0, "LAW", "Law of the volumetric pairs' V: log-uniform:LOW:HIGH, uniform:LOW:HIGH, natural", 0,
+     CLI_TEXT, CLI_TO(Options, volume)},
+    {"swap", 0, "SHARE", "Exchange the two tetrahedra in this share of the pairs (default: 0)", 0, CLI_NUMBER,
+     CLI_TO(Options, swap_share), 0, 1},
+    {"list", 0, NULL, "List laws and kinds", 0, CLI_FLAG, CLI_TO(Options, lists)},
+    {"quiet", 'q', NULL, "Say errors only", 0, CLI_FLAG, CLI_TO(Options, is_quiet)},
+    {0},
+};
 
 static void list_names(void) {
   int count;
@@ -178,10 +151,10 @@ static Status make(const Options *options) {
                            .stop = app_job_stop_flag(),
                            .observe = show_progress,
                            .observer = &progress};
-  datagen_plan_shard(&plan, options->shard, options->shard_count, &run.first, &run.count);
+  datagen_plan_shard(&plan, options->shard.number, options->shard.count, &run.first, &run.count);
   if (run.count == 0)
     return status_fail(STATUS_USAGE, "%lld pairs in %d parts leave none for part %d", plan.count,
-                       options->shard_count, options->shard);
+                       options->shard.count, options->shard.number);
   Status status = datagen_run(&plan, &run);
   log_progress_end();
   double seconds = clock_wall_s() - progress.began_s;
@@ -191,16 +164,15 @@ static Status make(const Options *options) {
   return status;
 }
 
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .doc = "Make a data set of labelled pairs of tetrahedra: coordinates, whether they meet, their kind, the "
-           "volume they share and, if wanted, its derivatives."};
+static void check(struct argp_state *state, void *given) {
+  const Options *options = given;
+  if (!options->output && !options->lists) argp_error(state, "name the file to write, as in -o pairs.h5");
+}
 
 static int run_command(int argument_count, char **arguments) {
-  Options options = {.seed = 1, .swap_share = NAN, .shard = 1, .shard_count = 1};
+  Options options = {.seed = 1, .swap_share = NAN, .shard = {1, 1}};
   datagen_law_find("paper-train", &options.law);
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_datagen, argument_count, arguments, &options);
   if (options.lists) {
     list_names();
     return 0;
@@ -210,9 +182,14 @@ static int run_command(int argument_count, char **arguments) {
   return app_cli_command_end(make(&options));
 }
 
-const AppCommand app_command_datagen = {.name = "datagen",
-                                        .help =
-                                            "make labelled pairs of tetrahedra for learned overlap models",
-                                        .argp = &argp,
-                                        .run = run_command,
-                                        .has_threads = true};
+const AppCommand app_command_datagen = {
+    .name = "datagen",
+    .help = "make labelled pairs of tetrahedra for learned overlap models",
+    .options = option_table,
+    .arguments =
+        &(const AppArguments){.excess = "'%s' is one argument too many: the file to write is given with -o"},
+    .doc = "Make a data set of labelled pairs of tetrahedra: coordinates, whether they meet, their kind, the "
+           "volume they share and, if wanted, its derivatives.",
+    .check = check,
+    .run = run_command,
+    .has_threads = true};

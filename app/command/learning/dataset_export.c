@@ -1,65 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/learning/dataset_export.h"
 
-#include <stdlib.h>
+#include <math.h>
 #include <string.h>
 #include <strings.h>
 
+#include "app/cli/parse.h"
 #include "app/pairs/npy.h"
 #include "base/files/file.h"
 #include "base/log.h"
 #include "datagen/files/dataset.h"
 
-enum { MOST_TYPE = 256, KEY_FIRST = 256 };
+enum { MOST_TYPE = 256 };
 
 typedef struct Options {
   const char *file, *output;
   long long first, count; // count −1: to the end
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"count", 'n', "N", 0, "Pairs (default: all that follow)", 0},
-    {"first", KEY_FIRST, "I", 0, "The first of them, counted from 0 (default: 0)", 0},
-    {"output", 'o', "FILE.npy", 0, "The file to write", 0},
+static const AppOption option_table[] = {
+    {"count", 'n', "N", "Pairs (default: all that follow)", 0, CLI_INTEGER, CLI_TO(Options, count), 0,
+     INFINITY},
+    {"first", 0, "I", "The first of them, counted from 0 (default: 0)", 0, CLI_INTEGER,
+     CLI_TO(Options, first), 0, INFINITY},
+    {"output", 'o', "FILE.npy", "The file to write", 0, CLI_TEXT, CLI_TO(Options, output)},
     {0},
 };
-
-static long long read_count(struct argp_state *state, const char *name, const char *text) {
-  char *end;
-  double value = strtod(text, &end);
-  if (*end || end == text || !(value >= 0) || value != (double)(long long)value)
-    argp_error(state, "--%s %s: expected a whole number from 0 on", name, text);
-  return (long long)value;
-}
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case 'n':
-    options->count = read_count(state, "count", text);
-    return 0;
-  case KEY_FIRST:
-    options->first = read_count(state, "first", text);
-    return 0;
-  case 'o':
-    options->output = text;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (options->file) argp_error(state, "'%s' is one argument too many: give one data set", text);
-    options->file = text;
-    return 0;
-  case ARGP_KEY_NO_ARGS:
-    argp_error(state, "which data set? as in: tetlap dataset export train.h5 -o train.npy");
-    return 0;
-  case ARGP_KEY_END: {
-    const char *dot = options->output ? strrchr(options->output, '.') : NULL;
-    if (!dot || strcasecmp(dot, ".npy") != 0) argp_error(state, "name the file to write, as in -o pairs.npy");
-    return 0;
-  }
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
 
 static void write_head(FILE *stream, const DatagenInfo *info, long long count) {
   const char order = app_pairs_npy_order();
@@ -122,18 +88,26 @@ static Status export_pairs(const Options *options) {
   return status;
 }
 
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .args_doc = "FILE",
-    .doc = "Write a data set as a NumPy array of records, with the fields coordinates, "
-           "status, kind, volume, and gradient and centroid if the data set has them."};
+static void check(struct argp_state *state, void *given) {
+  const char *output = ((const Options *)given)->output, *dot = output ? strrchr(output, '.') : NULL;
+  if (!dot || strcasecmp(dot, ".npy") != 0) argp_error(state, "name the file to write, as in -o pairs.npy");
+}
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {.count = -1};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_dataset_export, argument_count, arguments, &options);
   return app_cli_command_end(export_pairs(&options));
 }
 
 const AppCommand app_command_dataset_export = {
-    .name = "export", .help = "write a data set as a NumPy array", .argp = &argp, .run = run_command};
+    .name = "export",
+    .help = "write a data set as a NumPy array",
+    .options = option_table,
+    .arguments =
+        &(const AppArguments){"FILE", offsetof(Options, file), 1,
+                              .missing = "which data set? as in: tetlap dataset export train.h5 -o train.npy",
+                              .excess = "'%s' is one argument too many: give one data set"},
+    .doc = "Write a data set as a NumPy array of records, with the fields coordinates, "
+           "status, kind, volume, and gradient and centroid if the data set has them.",
+    .check = check,
+    .run = run_command};

@@ -3,13 +3,13 @@
 
 #include <omp.h>
 
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "app/cli/versions.h"
 #include "app/dataset/import.h"
 #include "app/job/job.h"
 #include "base/log.h"
 
-enum { KEY_TOLERANCE = 256, KEY_GRADIENT, KEY_STRICT, MOST_TEXT = 1024 };
+enum { MOST_TEXT = 1024 };
 
 typedef struct Options {
   AppImportDef import;
@@ -18,70 +18,23 @@ typedef struct Options {
   bool is_json, is_quiet, is_verbose;
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"output", 'o', "FILE", 0, "The data set to write (.h5)", 0},
-    {"tolerance", KEY_TOLERANCE, "SHARE", 0,
+static const AppOption option_table[] = {
+    {"output", 'o', "FILE", "The data set to write (.h5)", 0, CLI_TEXT, CLI_TO(Options, import.output)},
+    {"tolerance", 0, "SHARE",
      "By how much of the exact V, and of the length of its derivatives, a label may be off (default: 1e-6)",
-     0},
-    {"gradient", KEY_GRADIENT, NULL, 0, "Put the derivatives of V into the set, if the file has none, too",
-     0},
-    {"strict", KEY_STRICT, NULL, 0, "A wrong label is an error, and nothing is written", 0},
-    {"threads", 't', "N", 0, "Threads (default: all); the result does not depend on it", 0},
-    {"json", 'j', NULL, 0, "Print what was found as JSON", 0},
-    {"quiet", 'q', NULL, 0, "Say errors only", 0},
-    {"verbose", 'v', NULL, 0, "Name every wrong label, not only the first ten of a sort", 0},
+     0, CLI_NUMBER, CLI_TO(Options, import.tolerance), 0, 1},
+    {"gradient", 0, NULL, "Put the derivatives of V into the set, if the file has none, too", 0, CLI_FLAG,
+     CLI_TO(Options, import.has_gradient)},
+    {"strict", 0, NULL, "A wrong label is an error, and nothing is written", 0, CLI_FLAG,
+     CLI_TO(Options, import.is_strict)},
+    {"threads", 't', "N", "Threads (default: all); the result does not depend on it", 0, CLI_INTEGER,
+     CLI_TO(Options, threads), 1, APP_CLI_MOST_THREADS},
+    {"json", 'j', NULL, "Print what was found as JSON", 0, CLI_FLAG, CLI_TO(Options, is_json)},
+    {"quiet", 'q', NULL, "Say errors only", 0, CLI_FLAG, CLI_TO(Options, is_quiet)},
+    {"verbose", 'v', NULL, "Name every wrong label, not only the first ten of a sort", 0, CLI_FLAG,
+     CLI_TO(Options, is_verbose)},
     {0},
 };
-
-static error_t parse_argument(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case ARGP_KEY_ARG:
-    if (options->file) argp_error(state, "'%s' is one argument too many: give one file of pairs", text);
-    options->file = text;
-    return 0;
-  case ARGP_KEY_NO_ARGS:
-    argp_error(state, "name a file of pairs, as in pairs.csv, or - for standard input");
-    return 0;
-  case ARGP_KEY_END:
-    if (!options->import.output) argp_error(state, "name the file to write, as in -o pairs.h5");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case 'o':
-    options->import.output = text;
-    return 0;
-  case KEY_TOLERANCE:
-    options->import.tolerance = app_argument_number(state, "tolerance", text, 0, 1);
-    return 0;
-  case KEY_GRADIENT:
-    options->import.has_gradient = true;
-    return 0;
-  case KEY_STRICT:
-    options->import.is_strict = true;
-    return 0;
-  case 't':
-    options->threads = app_argument_threads(state, text);
-    return 0;
-  case 'j':
-    options->is_json = true;
-    return 0;
-  case 'q':
-    options->is_quiet = true;
-    return 0;
-  case 'v':
-    options->is_verbose = true;
-    return 0;
-  default:
-    return parse_argument(key, text, state);
-  }
-}
 
 static void log_counts(const AppPairsReader *reader, const AppImport *import) {
   for (int f = 0; f < APP_IMPORT_FAULT_COUNT; f++) {
@@ -131,31 +84,38 @@ static Status run(const Options *options) {
   return status ? status : printed;
 }
 
-static const struct argp argp = {.options = option_table,
-                                 .parser = parse,
-                                 .args_doc = "FILE",
-                                 .doc = "Make a data set of labelled pairs of tetrahedra of one's own. "
-                                        "Status and volume of every pair are found in exact "
-                                        "arithmetic; labels of the file that disagree are counted, named and "
-                                        "replaced.\vFILE is text (.csv) or .npy, - "
-                                        "standard input. A row has 24 coordinates, or 25 numbers (volume "
-                                        "behind them), 26 (status, volume), 49 (volume, "
-                                        "24 derivatives), 50 (status, volume, derivatives); or a header "
-                                        "names the columns: a0x … b3z, status, volume, "
-                                        "dV/da0x … dV/db3z. See docs/data.md."};
+static void check(struct argp_state *state, void *options) {
+  if (!((const Options *)options)->import.output)
+    argp_error(state, "name the file to write, as in -o pairs.h5");
+}
 
 static int run_command(int argument_count, char **arguments) {
   char program[DATAGEN_PROGRAM_TEXT];
   snprintf(program, sizeof program, "tetlap %s", app_versions_program());
   Options options = {.import = {.tolerance = 1e-6, .program = program, .stop = app_job_stop_flag()}};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_dataset_import, argument_count, arguments, &options);
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet, .is_verbose = options.is_verbose});
   if (options.threads) omp_set_num_threads(options.threads);
   return app_cli_command_end(run(&options));
 }
 
-const AppCommand app_command_dataset_import = {.name = "import",
-                                               .help = "make a data set of your own labelled pairs",
-                                               .argp = &argp,
-                                               .run = run_command,
-                                               .has_threads = true};
+const AppCommand app_command_dataset_import = {
+    .name = "import",
+    .help = "make a data set of your own labelled pairs",
+    .options = option_table,
+    .arguments =
+        &(const AppArguments){"FILE", offsetof(Options, file), 1,
+                              .missing = "name a file of pairs, as in pairs.csv, or - for standard input",
+                              .excess = "'%s' is one argument too many: give one file of pairs"},
+    .doc = "Make a data set of labelled pairs of tetrahedra of one's own. "
+           "Status and volume of every pair are found in exact "
+           "arithmetic; labels of the file that disagree are counted, named and "
+           "replaced.\vFILE is text (.csv) or .npy, - "
+           "standard input. A row has 24 coordinates, or 25 numbers (volume "
+           "behind them), 26 (status, volume), 49 (volume, "
+           "24 derivatives), 50 (status, volume, derivatives); or a header "
+           "names the columns: a0x … b3z, status, volume, "
+           "dV/da0x … dV/db3z. See docs/data.md.",
+    .check = check,
+    .run = run_command,
+    .has_threads = true};

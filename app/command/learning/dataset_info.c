@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "app/cli/parse.h"
 #include "app/dataset/summary.h"
 #include "base/files/record.h"
 #include "datagen/files/dataset.h"
@@ -13,25 +14,10 @@ typedef struct Options {
   bool is_json;
 } Options;
 
-static const struct argp_option option_table[] = {{"json", 'j', NULL, 0, "Print JSON", 0}, {0}};
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case 'j':
-    options->is_json = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (options->file) argp_error(state, "'%s' is one argument too many: give one data set", text);
-    options->file = text;
-    return 0;
-  case ARGP_KEY_NO_ARGS:
-    argp_error(state, "which data set? give a file, as in: tetlap dataset info train.h5");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
+static const AppOption option_table[] = {
+    {"json", 'j', NULL, "Print JSON", 0, CLI_FLAG, CLI_TO(Options, is_json)},
+    {0},
+};
 
 static void print_text(const char *path, const DatagenInfo *info, const AppDatasetSummary *summary) {
   printf("%s\n", path);
@@ -111,17 +97,19 @@ static Status print_info(const Options *options) {
   return status;
 }
 
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .args_doc = "FILE",
-    .doc = "Say what a data set of pairs holds: its origin, its kinds of pairs and their volumes."};
-
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_dataset_info, argument_count, arguments, &options);
   return app_cli_command_end(print_info(&options));
 }
 
 const AppCommand app_command_dataset_info = {
-    .name = "info", .help = "say what a data set holds", .argp = &argp, .run = run_command};
+    .name = "info",
+    .help = "say what a data set holds",
+    .options = option_table,
+    .arguments =
+        &(const AppArguments){"FILE", offsetof(Options, file), 1,
+                              .missing = "which data set? give a file, as in: tetlap dataset info train.h5",
+                              .excess = "'%s' is one argument too many: give one data set"},
+    .doc = "Say what a data set of pairs holds: its origin, its kinds of pairs and their volumes.",
+    .run = run_command};

@@ -2,11 +2,12 @@
 #include "app/command/learning/eval.h"
 
 #include <limits.h>
+#include <math.h>
 #include <omp.h>
 #include <stdbool.h>
 
-#include "app/cli/argument.h"
 #include "app/cli/model_names.h"
+#include "app/cli/parse.h"
 #include "app/cli/versions.h"
 #include "app/dataset/source.h"
 #include "app/evaluation/model.h"
@@ -17,10 +18,11 @@
 #include "base/log.h"
 #include "overlap/weights.h"
 
-enum { KEY_MIX = 256, KEY_VOLUME, KEY_PATHS, KEY_DOUBT, BLOCK = 16384 };
+enum { BLOCK = 16384 };
 
 typedef struct Options {
-  const char *model;
+  const char *words[2]; // the model, and a file of pairs
+  int word_count;
   AppSourceDef source;
   int threads;  // 0: all
   int paths;    // to look for jumps along; 0: none
@@ -28,26 +30,33 @@ typedef struct Options {
   bool has_seed, is_json, is_quiet;
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"law", 'l', "NAME", 0, "Make the pairs by this law, as `tetlap datagen` does, instead of a FILE", 0},
-    {"count", 'n', "N", 0, "Pairs (default: all of the file; the law's)", 0},
-    {"seed", 's', "S", 0, "The law's seed (default: 1)", 0},
-    {"mix", KEY_MIX, "KIND=SHARE,...", 0, "Shares of the kinds, instead of the law's", 0},
-    {"volume", KEY_VOLUME, "LAW", 0, "Law of the volumetric pairs' V, instead of the law's", 0},
-    {"paths", KEY_PATHS, "N", 0, "Look for jumps of V and of its gradient along N paths; needs no data", 0},
-    {"doubt", KEY_DOUBT, "T", 0,
+static const AppOption option_table[] = {
+    {"law", 'l', "NAME", "Make the pairs by this law, as `tetlap datagen` does, instead of a FILE", 0,
+     CLI_TEXT, CLI_TO(Options, source.law)},
+    {"count", 'n', "N", "Pairs (default: all of the file; the law's)", 0, CLI_INTEGER,
+     CLI_TO(Options, source.count), 1, INFINITY},
+    {"seed", 's', "S", "The law's seed (default: 1)", 0, CLI_SEED, CLI_TO(Options, source.seed),
+     .mark_offset = offsetof(Options, has_seed)},
+    {"mix", 0, "KIND=SHARE,...", "Shares of the kinds, instead of the law's", 0, CLI_WORDS,
+     CLI_TO(Options, source.mix), .example = "none=50,volumetric=50"},
+    {"volume", 0, "LAW", "Law of the volumetric pairs' V, instead of the law's", 0, CLI_TEXT,
+     CLI_TO(Options, source.volume)},
+    {"paths", 0, "N", "Look for jumps of V and of its gradient along N paths; needs no data", 0, CLI_INTEGER,
+     CLI_TO(Options, paths), 1, INT_MAX},
+    {"doubt", 0, "T",
      "Of hybrid: the bound of V's relative error from which clipping begins, as contact.net.doubt "
      "(default: 0.005)",
-     0},
-    {"threads", 't', "N", 0, "Threads (default: all); the result does not depend on it", 0},
-    {"json", 'j', NULL, 0, "Print the result as JSON", 0},
-    {"quiet", 'q', NULL, 0, "Say errors only", 0},
+     0, CLI_POSITIVE, CLI_TO(Options, doubt)},
+    {"threads", 't', "N", "Threads (default: all); the result does not depend on it", 0, CLI_INTEGER,
+     CLI_TO(Options, threads), 1, APP_CLI_MOST_THREADS},
+    {"json", 'j', NULL, "Print the result as JSON", 0, CLI_FLAG, CLI_TO(Options, is_json)},
+    {"quiet", 'q', NULL, "Say errors only", 0, CLI_FLAG, CLI_TO(Options, is_quiet)},
     {0},
 };
 
-static void check(struct argp_state *state, const Options *options) {
-  if (!options->model)
-    argp_error(state, "name a model (clip, exact, geo, …) or a weights file, then a data set or --law");
+static void check(struct argp_state *state, void *given) {
+  Options *options = given;
+  options->source.file = options->words[1];
   if (!options->source.file && !options->source.law && !options->paths)
     argp_error(state, "name a data set's file, a --law, or a number of --paths");
   if (options->source.file && options->source.law)
@@ -62,56 +71,6 @@ static void check(struct argp_state *state, const Options *options) {
                "--seed is of the pairs of a --law or of --paths, and a file has its own; leave it out");
   if (source->count && !source->law && !source->file)
     argp_error(state, "--count is of the pairs of a file or a --law, and there is neither; leave it out");
-}
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case 'l':
-    options->source.law = text;
-    return 0;
-  case 'n':
-    options->source.count = app_argument_integer(state, "count", text, 1, LLONG_MAX);
-    return 0;
-  case 's':
-    options->source.seed = app_argument_seed(state, text);
-    options->has_seed = true;
-    return 0;
-  case KEY_MIX:
-    options->source.mix = app_argument_words(state, "mix", text, "none=50,volumetric=50");
-    return 0;
-  case KEY_VOLUME:
-    options->source.volume = text;
-    return 0;
-  case KEY_PATHS:
-    options->paths = (int)app_argument_integer(state, "paths", text, 1, INT_MAX);
-    return 0;
-  case KEY_DOUBT:
-    options->doubt = app_argument_positive(state, "doubt", text);
-    return 0;
-  case 't':
-    options->threads = app_argument_threads(state, text);
-    return 0;
-  case 'j':
-    options->is_json = true;
-    return 0;
-  case 'q':
-    options->is_quiet = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (!options->model)
-      options->model = text;
-    else if (!options->source.file)
-      options->source.file = text;
-    else
-      argp_error(state, "'%s' is one argument too many: give MODEL and FILE", text);
-    return 0;
-  case ARGP_KEY_END:
-    check(state, options);
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
 }
 
 static Status add_blocks(AppSource *source, const DatagenPairs *buffer, AppEvaluationRun *run) {
@@ -141,7 +100,7 @@ typedef struct Findings {
 
 static Status print(const Options *options, const Findings *findings) {
   AppModelName name;
-  app_model_names_find_one(options->model, name);
+  app_model_names_find_one(options->words[0], name);
   if (findings->has_evaluation)
     TRY(app_evaluation_print(&findings->evaluation, name, findings->data, stdout));
   if (findings->has_paths) app_evaluation_print_paths(&findings->paths, name, stdout);
@@ -153,9 +112,9 @@ static Status record(const Options *options, const Findings *findings) {
   if (!record) return status_no_memory("the result");
   AppModelName name;
   char path[PATH_MAX];
-  app_model_names_find_one(options->model, name);
+  app_model_names_find_one(options->words[0], name);
   record_text(record, "model", name);
-  record_text(record, "weights", app_model_names_locate(options->model, path) ? path : NULL);
+  record_text(record, "weights", app_model_names_locate(options->words[0], path) ? path : NULL);
   record_text(record, "program", app_versions_program());
   if (options->doubt > 0) record_number(record, "doubt", options->doubt);
   if (findings->has_evaluation) {
@@ -204,37 +163,40 @@ static Status open_and_evaluate(const Options *options) {
   OverlapModel model;
   OverlapOptions wanted = overlap_options_default();
   if (options->doubt > 0) wanted.doubt = options->doubt;
-  Status opened = app_evaluation_model_open_with(&model, options->model, options->doubt > 0 ? &wanted : NULL);
-  if (opened == STATUS_INPUT && !overlap_weights_is_path(options->model)) return STATUS_USAGE; // no such name
+  Status opened =
+      app_evaluation_model_open_with(&model, options->words[0], options->doubt > 0 ? &wanted : NULL);
+  if (opened == STATUS_INPUT && !overlap_weights_is_path(options->words[0]))
+    return STATUS_USAGE; // no such name
   TRY(opened);
   Status status = options->doubt > 0 && !app_evaluation_bounds_are_told(&model)
                       ? status_fail(STATUS_USAGE,
                                     "--doubt: the model '%s' gives no bound of its error; hybrid and "
                                     "hybrid=NETWORK of a geo do",
-                                    options->model)
+                                    options->words[0])
                       : evaluate_all(options, &model);
   overlap_model_destroy(&model);
   return status;
 }
 
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .args_doc = "MODEL [FILE]",
-    .doc = "Evaluate an overlap model, by name or weights file, on labelled pairs: status, volume, "
-           "derivatives, ghosts and symmetries, in addition to the paper's Table 4.",
-};
-
 static int run_command(int argument_count, char **arguments) {
   Options options = {.source.seed = 1};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_eval, argument_count, arguments, &options);
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
   if (options.threads) omp_set_num_threads(options.threads);
   return app_cli_command_end(open_and_evaluate(&options));
 }
 
-const AppCommand app_command_eval = {.name = "eval",
-                                     .help = "measure an overlap model against labelled pairs",
-                                     .argp = &argp,
-                                     .run = run_command,
-                                     .has_threads = true};
+const AppCommand app_command_eval = {
+    .name = "eval",
+    .help = "measure an overlap model against labelled pairs",
+    .options = option_table,
+    .arguments =
+        &(const AppArguments){
+            "MODEL [FILE]", offsetof(Options, words), 2, offsetof(Options, word_count),
+            .missing = "name a model (clip, exact, geo, …) or a weights file, then a data set or --law",
+            .excess = "'%s' is one argument too many: give MODEL and FILE"},
+    .doc = "Evaluate an overlap model, by name or weights file, on labelled pairs: status, volume, "
+           "derivatives, ghosts and symmetries, in addition to the paper's Table 4.",
+    .check = check,
+    .run = run_command,
+    .has_threads = true};

@@ -5,13 +5,11 @@
 #include <omp.h>
 #include <stdio.h>
 
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "app/job/job.h"
 #include "app/training/log.h"
 #include "app/training/training.h"
 #include "base/log.h"
-
-enum { KEY_RESUME = 256, KEY_FORCE };
 
 typedef struct Options {
   const char *config, *directory;
@@ -20,48 +18,20 @@ typedef struct Options {
   bool resumes, replaces, is_quiet;
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"output", 'o', "DIR", 0, "Write into DIR (default: out/train/ and the configuration's name)", 0},
-    {"set", 's', "KEY=VALUE", 0, "Replace a value of the configuration, as in optimiser.rate=1e-3", 0},
-    {"threads", 't', "N", 0, "Threads (default: all); the result does not depend on it", 0},
-    {"resume", KEY_RESUME, NULL, 0, "Go on from the checkpoint in DIR", 0},
-    {"force", KEY_FORCE, NULL, 0, "Replace files in DIR that are not of this training", 0},
-    {"quiet", 'q', NULL, 0, "Say errors only", 0},
+static const AppOption option_table[] = {
+    {"output", 'o', "DIR", "Write into DIR (default: out/train/ and the configuration's name)", 0, CLI_TEXT,
+     CLI_TO(Options, directory)},
+    {"set", 's', "KEY=VALUE", "Replace a value of the configuration, as in optimiser.rate=1e-3", 0,
+     CLI_REPEATED, CLI_TO(Options, overrides), .most = APP_MAX_OVERRIDES, .example = "--set",
+     .count_offset = offsetof(Options, override_count)},
+    {"threads", 't', "N", "Threads (default: all); the result does not depend on it", 0, CLI_INTEGER,
+     CLI_TO(Options, threads), 1, APP_CLI_MOST_THREADS},
+    {"resume", 0, NULL, "Go on from the checkpoint in DIR", 0, CLI_FLAG, CLI_TO(Options, resumes)},
+    {"force", 0, NULL, "Replace files in DIR that are not of this training", 0, CLI_FLAG,
+     CLI_TO(Options, replaces)},
+    {"quiet", 'q', NULL, "Say errors only", 0, CLI_FLAG, CLI_TO(Options, is_quiet)},
     {0},
 };
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case 'o':
-    options->directory = text;
-    return 0;
-  case 's':
-    app_argument_add(state, "--set", text, APP_MAX_OVERRIDES, options->overrides, &options->override_count);
-    return 0;
-  case 't':
-    options->threads = app_argument_threads(state, text);
-    return 0;
-  case KEY_RESUME:
-    options->resumes = true;
-    return 0;
-  case KEY_FORCE:
-    options->replaces = true;
-    return 0;
-  case 'q':
-    options->is_quiet = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (options->config) argp_error(state, "one configuration at a time; '%s' is the second", text);
-    options->config = text;
-    return 0;
-  case ARGP_KEY_END:
-    if (!options->config) argp_error(state, "name a configuration, as in examples/train/smoke.yaml");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
 
 static void show_progress(void *observer, const AppTrainingProgress *progress) {
   LogPace *pace = observer;
@@ -124,24 +94,22 @@ static Status read_and_train(const Options *options) {
   return status;
 }
 
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .args_doc = "CONFIG",
-    .doc = "Train a learned overlap model: data, network, loss and schedule as CONFIG says. The best "
-           "weights, a checkpoint, a log and its picture are written.",
-};
-
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_train, argument_count, arguments, &options);
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
   if (options.threads) omp_set_num_threads(options.threads);
   return app_cli_command_end(read_and_train(&options));
 }
 
-const AppCommand app_command_train = {.name = "train",
-                                      .help = "train a learned overlap model",
-                                      .argp = &argp,
-                                      .run = run_command,
-                                      .has_threads = true};
+const AppCommand app_command_train = {
+    .name = "train",
+    .help = "train a learned overlap model",
+    .options = option_table,
+    .arguments = &(const AppArguments){"CONFIG", offsetof(Options, config), 1,
+                                       .missing = "name a configuration, as in examples/train/smoke.yaml",
+                                       .excess = "one configuration at a time; '%s' is the second"},
+    .doc = "Train a learned overlap model: data, network, loss and schedule as CONFIG says. The best "
+           "weights, a checkpoint, a log and its picture are written.",
+    .run = run_command,
+    .has_threads = true};

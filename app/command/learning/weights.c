@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/cli/parse.h"
 #include "app/training/task.h"
 #include "app/training/tpn.h"
 #include "base/log.h"
@@ -15,29 +16,12 @@ typedef struct Options {
   const char *name, *config;
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"range", 'r', "CONFIG", 0,
-     "Write into the file the range of the training data of this `tetlap train` configuration (kind tpn)", 0},
+static const AppOption option_table[] = {
+    {"range", 'r', "CONFIG",
+     "Write into the file the range of the training data of this `tetlap train` configuration (kind tpn)", 0,
+     CLI_TEXT, CLI_TO(Options, config)},
     {0},
 };
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case 'r':
-    options->config = text;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (options->name) argp_error(state, "one file at a time; '%s' is the second", text);
-    options->name = text;
-    return 0;
-  case ARGP_KEY_END:
-    if (!options->name) argp_error(state, "name a weights file, or a model whose weights ship");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
 
 static Status print(const char *path, const NetModel_f32 *model, const NetCard *card) {
   char shape[NET_SHAPE_TEXT];
@@ -110,18 +94,19 @@ static Status print_weights(const Options *options) {
   return status;
 }
 
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .args_doc = "NAME|FILE",
-    .doc = "Print the metadata of a weights file: the network's shape, the normalisation of its input, the "
-           "range of its training data, and its provenance."};
-
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_weights, argument_count, arguments, &options);
   return app_cli_command_end(print_weights(&options));
 }
 
 const AppCommand app_command_weights = {
-    .name = "weights", .help = "print the metadata of a weights file", .argp = &argp, .run = run_command};
+    .name = "weights",
+    .help = "print the metadata of a weights file",
+    .options = option_table,
+    .arguments = &(const AppArguments){"NAME|FILE", offsetof(Options, name), 1,
+                                       .missing = "name a weights file, or a model whose weights ship",
+                                       .excess = "one file at a time; '%s' is the second"},
+    .doc = "Print the metadata of a weights file: the network's shape, the normalisation of its input, the "
+           "range of its training data, and its provenance.",
+    .run = run_command};

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "app/plot/gnuplot.h"
 #include "app/plot/plot.h"
 #include "base/files/file.h"
@@ -19,35 +19,13 @@ typedef struct Options {
   bool is_quiet;
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"output", 'o', "FILE", 0,
-     "The picture: FILE.svg, FILE.pdf or FILE.png; its script is FILE with .gp appended", 0},
-    {"quiet", 'q', NULL, 0, "Say errors only", 0},
+static const AppOption option_table[] = {
+    {"output", 'o', "FILE",
+     "The picture: FILE.svg, FILE.pdf or FILE.png; its script is FILE with .gp appended", 0, CLI_TEXT,
+     CLI_TO(Options, picture)},
+    {"quiet", 'q', NULL, "Say errors only", 0, CLI_FLAG, CLI_TO(Options, is_quiet)},
     {0},
 };
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case 'o':
-    options->picture = text;
-    return 0;
-  case 'q':
-    options->is_quiet = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (options->source_count == MAX_SOURCES)
-      argp_error(state, "'%s' is one argument too many: give one run or two", text);
-    options->sources[options->source_count++] = text;
-    return 0;
-  case ARGP_KEY_END:
-    if (options->source_count == 0) argp_error(state, "name the directory of a run, or of two");
-    if (!options->picture) argp_error(state, "name the picture, as in -o forces.svg");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
 
 static const char *last_name(const char *directory) {
   const char *slash = strrchr(directory, '/');
@@ -91,19 +69,13 @@ static Status plot(const Options *options, const char *path) {
   return STATUS_OK;
 }
 
-static const struct argp argp = {
-    option_table,
-    parse,
-    "DIR [DIR]",
-    "Draw a figure for a paper: the forces, energies and steps of one or two runs.\vThe gnuplot script that "
-    "drew it is kept beside it and holds the data.",
-    NULL,
-    NULL,
-    NULL};
+static void check(struct argp_state *state, void *options) {
+  if (!((const Options *)options)->picture) argp_error(state, "name the picture, as in -o forces.svg");
+}
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
-  if (argp_parse(&argp, argument_count, arguments, 0, NULL, &options)) return status_exit_code(STATUS_USAGE);
+  app_cli_parse(&app_command_plot, argument_count, arguments, &options);
   if (options.is_quiet) log_set_level(LOG_ERROR);
   size_t size = strlen(options.picture) + 4;
   char *script = memory_zeroed(size, 1);
@@ -117,4 +89,15 @@ static int run_command(int argument_count, char **arguments) {
 }
 
 const AppCommand app_command_plot = {
-    .name = "plot", .help = "draw one or two runs for a paper", .argp = &argp, .run = run_command};
+    .name = "plot",
+    .help = "draw one or two runs for a paper",
+    .options = option_table,
+    .arguments = &(const AppArguments){"DIR [DIR]", offsetof(Options, sources), MAX_SOURCES,
+                                       offsetof(Options, source_count),
+                                       .missing = "name the directory of a run, or of two",
+                                       .excess = "'%s' is one argument too many: give one run or two"},
+    .doc = "Draw a figure for a paper: the forces, energies and steps of one or two runs.\vThe gnuplot "
+           "script that "
+           "drew it is kept beside it and holds the data.",
+    .check = check,
+    .run = run_command};

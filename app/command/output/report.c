@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/output/report.h"
 
-#include <errno.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "app/report/collect.h"
 #include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
 
-enum { KEY_FRAMES = 256, KEY_SURFACE, KEY_PARETO, KEY_BENCH, KEY_STRESS };
+enum { MOST_FRAMES = 1000000 };
 
 typedef struct Options {
   const char *directories[APP_REPORT_MAX_RUNS];
@@ -28,71 +26,26 @@ typedef struct Options {
   bool has_surface_only, is_quiet;
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"output", 'o', "FILE", 0, "Write this file (default: report.html in the first DIR, else here)", 0},
-    {"frames", KEY_FRAMES, "N", 0, "Take at most N frames of a run, evenly spaced (default: all)", 0},
-    {"surface", KEY_SURFACE, NULL, 0,
-     "Take the bodies' surfaces only: a smaller page, which cannot cut bodies open", 0},
-    {"pareto", KEY_PARETO, "FILE", 0, "Show this result of tools/measure/frontier as well", 0},
-    {"bench", KEY_BENCH, "FILE", 0, "Show this result of `tetlap bench --json` as well; may be repeated", 0},
-    {"stress", KEY_STRESS, "FILE", 0,
+static const AppOption option_table[] = {
+    {"output", 'o', "FILE", "Write this file (default: report.html in the first DIR, else here)", 0, CLI_TEXT,
+     CLI_TO(Options, output)},
+    {"frames", 0, "N", "Take at most N frames of a run, evenly spaced (default: all)", 0, CLI_INTEGER,
+     CLI_TO(Options, max_frames), 1, MOST_FRAMES},
+    {"surface", 0, NULL, "Take the bodies' surfaces only: a smaller page, which cannot cut bodies open", 0,
+     CLI_FLAG, CLI_TO(Options, has_surface_only)},
+    {"pareto", 0, "FILE", "Show this result of tools/measure/frontier as well", 0, CLI_TEXT,
+     CLI_TO(Options, pareto)},
+    {"bench", 0, "FILE", "Show this result of `tetlap bench --json` as well; may be repeated", 0,
+     CLI_REPEATED, CLI_TO(Options, benches), .most = APP_REPORT_MAX_BENCHES, .example = "results of bench",
+     .count_offset = offsetof(Options, bench_count)},
+    {"stress", 0, "FILE",
      "Show this table of `tetlap stress --json` as well; may be repeated: a later one replaces the same "
      "cases",
-     0},
-    {"quiet", 'q', NULL, 0, "Say errors only", 0},
+     0, CLI_REPEATED, CLI_TO(Options, stresses), .most = APP_REPORT_MAX_STRESSES,
+     .example = "tables of stress", .count_offset = offsetof(Options, stress_count)},
+    {"quiet", 'q', NULL, "Say errors only", 0, CLI_FLAG, CLI_TO(Options, is_quiet)},
     {0},
 };
-
-static int frames_of(struct argp_state *state, const char *text) {
-  char *end;
-  errno = 0;
-  long frames = strtol(text, &end, 10);
-  if (end == text || *end || errno || frames < 1 || frames > 1000000)
-    argp_error(state, "--frames is '%s'; give a whole number from 1 up", text);
-  return (int)frames;
-}
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case 'o':
-    options->output = text;
-    return 0;
-  case KEY_FRAMES:
-    options->max_frames = frames_of(state, text);
-    return 0;
-  case KEY_SURFACE:
-    options->has_surface_only = true;
-    return 0;
-  case KEY_PARETO:
-    options->pareto = text;
-    return 0;
-  case KEY_BENCH:
-    app_argument_add(state, "results of bench", text, APP_REPORT_MAX_BENCHES, options->benches,
-                     &options->bench_count);
-    return 0;
-  case KEY_STRESS:
-    app_argument_add(state, "tables of stress", text, APP_REPORT_MAX_STRESSES, options->stresses,
-                     &options->stress_count);
-    return 0;
-  case 'q':
-    options->is_quiet = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (options->directory_count == APP_REPORT_MAX_RUNS)
-      argp_error(state, "'%s' is one argument too many: a page shows at most %d runs", text,
-                 APP_REPORT_MAX_RUNS);
-    options->directories[options->directory_count++] = text;
-    return 0;
-  case ARGP_KEY_END:
-    if (options->directory_count == 0 && !options->pareto && options->bench_count == 0 &&
-        options->stress_count == 0)
-      argp_error(state, "name the directory of a run, of two runs or of a comparison");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
 
 static Status add_stress(AppReport *report, const char *path) {
   Record **record = &report->stresses[report->stress_count];
@@ -177,21 +130,15 @@ static Status write_page(AppReport *report, const Options *options) {
   return status;
 }
 
-static const struct argp argp = {
-    option_table,
-    parse,
-    "[DIR…]",
-    "Write a web page about a run, or about several side by side: the scene in motion, its plots, where the "
-    "time went.\vDIR is where `tetlap run` wrote, or `tetlap compare` (then all its models are shown). The "
-    "first is the one that the others are held against. The page is one file and needs no network.",
-    NULL,
-    NULL,
-    NULL};
+static void check(struct argp_state *state, void *given) {
+  const Options *options = given;
+  if (options->directory_count + options->bench_count + options->stress_count == 0 && !options->pareto)
+    argp_error(state, "name the directory of a run, of two runs or of a comparison");
+}
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
-  error_t wrong = argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  if (wrong) return status_exit_code(STATUS_USAGE);
+  app_cli_parse(&app_command_report, argument_count, arguments, &options);
   if (options.is_quiet) log_set_level(LOG_ERROR);
   AppReport report = {0};
   Status status = collect(&report, &options);
@@ -201,7 +148,18 @@ static int run_command(int argument_count, char **arguments) {
   return app_cli_command_end(status);
 }
 
-const AppCommand app_command_report = {.name = "report",
-                                       .help = "write a web page about a run, or several side by side",
-                                       .argp = &argp,
-                                       .run = run_command};
+const AppCommand app_command_report = {
+    .name = "report",
+    .help = "write a web page about a run, or several side by side",
+    .options = option_table,
+    .arguments =
+        &(const AppArguments){"[DIR…]", offsetof(Options, directories), APP_REPORT_MAX_RUNS,
+                              offsetof(Options, directory_count),
+                              .excess = "'%s' is one argument too many: a page shows at most %d runs"},
+    .doc = "Write a web page about a run, or about several side by side: the scene in motion, its plots, "
+           "where the "
+           "time went.\vDIR is where `tetlap run` wrote, or `tetlap compare` (then all its models are "
+           "shown). The "
+           "first is the one that the others are held against. The page is one file and needs no network.",
+    .check = check,
+    .run = run_command};

@@ -8,13 +8,13 @@
 #include <sys/stat.h>
 #include <time.h>
 
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "app/job/job.h"
 #include "app/view/server.h"
 #include "base/files/confine.h"
 #include "base/log.h"
 
-enum { KEY_FRAMES = 256, DEFAULT_FRAMES = 150, MOST_FRAMES = 1000000, MOST_PORT = 65535 };
+enum { DEFAULT_FRAMES = 150, MOST_FRAMES = 1000000, MOST_PORT = 65535 };
 
 typedef struct Options {
   const char *directory;
@@ -22,37 +22,15 @@ typedef struct Options {
   bool is_quiet;
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"port", 'p', "N", 0, "Take this port (default: any that is free)", 0},
-    {"frames", KEY_FRAMES, "N", 0,
-     "While the run goes on, show at most N frames, evenly spaced (default: 150); afterwards all", 0},
-    {"quiet", 'q', NULL, 0, "Say nothing but the address, and errors", 0},
+static const AppOption option_table[] = {
+    {"port", 'p', "N", "Take this port (default: any that is free)", 0, CLI_INTEGER, CLI_TO(Options, port), 0,
+     MOST_PORT},
+    {"frames", 0, "N",
+     "While the run goes on, show at most N frames, evenly spaced (default: 150); afterwards all", 0,
+     CLI_INTEGER, CLI_TO(Options, frames), 2, MOST_FRAMES},
+    {"quiet", 'q', NULL, "Say nothing but the address, and errors", 0, CLI_FLAG, CLI_TO(Options, is_quiet)},
     {0},
 };
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case 'p':
-    options->port = (int)app_argument_integer(state, "port", text, 0, MOST_PORT);
-    return 0;
-  case KEY_FRAMES:
-    options->frames = (int)app_argument_integer(state, "frames", text, 2, MOST_FRAMES);
-    return 0;
-  case 'q':
-    options->is_quiet = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (options->directory) argp_error(state, "one run at a time; '%s' is the second", text);
-    options->directory = text;
-    return 0;
-  case ARGP_KEY_END:
-    if (!options->directory) argp_error(state, "name the directory of a run");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
 
 static Status check_directory(const char *directory) {
   struct stat info;
@@ -82,27 +60,25 @@ static Status view(const Options *options) {
   return STATUS_OK;
 }
 
-static const struct argp argp = {
-    option_table,
-    parse,
-    "DIR",
-    "Show a run in a browser, also while it is running: the page of `tetlap report`, which is updated during "
-    "the run.\v"
-    "DIR is where `tetlap run` writes. The page is served to this machine alone, from an address that is "
-    "printed; "
-    "no file can be read through it. Ctrl-C ends the server, not the run.",
-    NULL,
-    NULL,
-    NULL};
-
 static int run_command(int argument_count, char **arguments) {
   Options options = {.frames = DEFAULT_FRAMES};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_view, argument_count, arguments, &options);
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
   return app_cli_command_end(view(&options));
 }
 
-const AppCommand app_command_view = {.name = "view",
-                                     .help = "show a run in a browser, also while it is running",
-                                     .argp = &argp,
-                                     .run = run_command};
+const AppCommand app_command_view = {
+    .name = "view",
+    .help = "show a run in a browser, also while it is running",
+    .options = option_table,
+    .arguments = &(const AppArguments){"DIR", offsetof(Options, directory), 1,
+                                       .missing = "name the directory of a run",
+                                       .excess = "one run at a time; '%s' is the second"},
+    .doc =
+        "Show a run in a browser, also while it is running: the page of `tetlap report`, which is updated "
+        "during "
+        "the run.\v"
+        "DIR is where `tetlap run` writes. The page is served to this machine alone, from an address that is "
+        "printed; "
+        "no file can be read through it. Ctrl-C ends the server, not the run.",
+    .run = run_command};

@@ -3,15 +3,13 @@
 
 #include <omp.h>
 
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "app/evaluation/model.h"
 #include "app/job/job.h"
 #include "app/pairs/reader.h"
 #include "app/pairs/writer.h"
 #include "base/log.h"
 #include "base/memory.h"
-
-enum { KEY_ORDER = 256 };
 
 typedef struct Options {
   const char *file, *model, *output; // output NULL: standard output
@@ -20,48 +18,20 @@ typedef struct Options {
   bool is_json, is_quiet;
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"model", 'm', "NAME", 0, "Overlap model, or a weights file (default: clip)", 0},
-    {"output", 'o', "FILE", 0, "Write FILE.csv, FILE.npy or FILE.json (default: CSV on standard output)", 0},
-    {"json", 'j', NULL, 0, "Print a JSON object a pair and line: volume, gradient, centroid, flags", 0},
-    {"order", KEY_ORDER, "N", 0, "0: volumes only; 1: with their derivatives (default)", 0},
-    {"threads", 't', "N", 0, "Threads (default: all); the result does not depend on it", 0},
-    {"quiet", 'q', NULL, 0, "Say errors only", 0},
+static const AppOption option_table[] = {
+    {"model", 'm', "NAME", "Overlap model, or a weights file (default: clip)", 0, CLI_TEXT,
+     CLI_TO(Options, model)},
+    {"output", 'o', "FILE", "Write FILE.csv, FILE.npy or FILE.json (default: CSV on standard output)", 0,
+     CLI_TEXT, CLI_TO(Options, output)},
+    {"json", 'j', NULL, "Print a JSON object a pair and line: volume, gradient, centroid, flags", 0, CLI_FLAG,
+     CLI_TO(Options, is_json)},
+    {"order", 0, "N", "0: volumes only; 1: with their derivatives (default)", 0, CLI_INTEGER,
+     CLI_TO(Options, order), 0, 1},
+    {"threads", 't', "N", "Threads (default: all); the result does not depend on it", 0, CLI_INTEGER,
+     CLI_TO(Options, threads), 1, APP_CLI_MOST_THREADS},
+    {"quiet", 'q', NULL, "Say errors only", 0, CLI_FLAG, CLI_TO(Options, is_quiet)},
     {0},
 };
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case 'm':
-    options->model = text;
-    return 0;
-  case 'o':
-    options->output = text;
-    return 0;
-  case 'j':
-    options->is_json = true;
-    return 0;
-  case KEY_ORDER:
-    options->order = (int)app_argument_integer(state, "order", text, 0, 1);
-    return 0;
-  case 't':
-    options->threads = app_argument_threads(state, text);
-    return 0;
-  case 'q':
-    options->is_quiet = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (options->file) argp_error(state, "'%s' is one argument too many: give one file of pairs", text);
-    options->file = text;
-    return 0;
-  case ARGP_KEY_NO_ARGS:
-    argp_error(state, "name a file of pairs, as in pairs.csv, or - for standard input");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
 
 // The model's answers for a block, owned.
 typedef struct Answers {
@@ -154,10 +124,22 @@ static Status run(const Options *options) {
   return status;
 }
 
-static const struct argp argp = {
+static int run_command(int argument_count, char **arguments) {
+  Options options = {.model = "clip", .order = 1};
+  app_cli_parse(&app_command_overlap, argument_count, arguments, &options);
+  app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
+  if (options.threads) omp_set_num_threads(options.threads);
+  return app_cli_command_end(run(&options));
+}
+
+const AppCommand app_command_overlap = {
+    .name = "overlap",
+    .help = "print overlap volumes of your own pairs of tetrahedra",
     .options = option_table,
-    .parser = parse,
-    .args_doc = "FILE",
+    .arguments =
+        &(const AppArguments){"FILE", offsetof(Options, file), 1,
+                              .missing = "name a file of pairs, as in pairs.csv, or - for standard input",
+                              .excess = "'%s' is one argument too many: give one file of pairs"},
     .doc = "Print the overlap volume of pairs of tetrahedra, its derivatives with respect to the 24 "
            "coordinates, its centroid, and the model's flags.\vFILE is text (.csv) of 24 numbers a row, "
            "tetrahedron 1's four "
@@ -165,17 +147,5 @@ static const struct argp argp = {
            "then tetrahedron 2's; or .npy of shape (n, 24) or (n, 2, 4, 3); or .h5, a data set or an array; "
            "- is "
            "standard input. A "
-           "header may name the columns a0x … a3z, b0x … b3z. See docs/overlap.md."};
-
-static int run_command(int argument_count, char **arguments) {
-  Options options = {.model = "clip", .order = 1};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
-  app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
-  if (options.threads) omp_set_num_threads(options.threads);
-  return app_cli_command_end(run(&options));
-}
-
-const AppCommand app_command_overlap = {.name = "overlap",
-                                        .help = "print overlap volumes of your own pairs of tetrahedra",
-                                        .argp = &argp,
-                                        .run = run_command};
+           "header may name the columns a0x … a3z, b0x … b3z. See docs/overlap.md.",
+    .run = run_command};

@@ -2,11 +2,10 @@
 #include "app/command/overlap/poses.h"
 
 #include <limits.h>
-#include <math.h>
 #include <omp.h>
 #include <string.h>
 
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "app/job/job.h"
 #include "app/poses/poses.h"
 #include "app/scene/read.h"
@@ -18,88 +17,40 @@ typedef struct Options {
   const char *scene, *file, *body, *device, *output;
   const char *overrides[APP_MAX_OVERRIDES];
   int override_count, random_count, threads;
-  const char *drawing; // an option that says how --random draws; NULL: none is given
+  bool has_seed, has_shift, has_turn; // how --random draws is said
   uint64_t seed;
   double shift, turn; // shift < 0: a tenth of the body's length
 } Options;
 
-enum { KEY_POSES = 256, KEY_RANDOM, KEY_BODY, KEY_SEED, KEY_SHIFT, KEY_TURN };
-
-static const struct argp_option option_table[] = {
-    {"poses", KEY_POSES, "FILE", 0,
-     "Poses, a line of 12 numbers each: a rotation R row by row, then a shift t, for x' = R x + t", 1},
-    {"random", KEY_RANDOM, "N", 0, "N random poses around that of the scene", 1},
-    {"body", KEY_BODY, "NAME", 0, "The body or obstacle that is posed (default: the first)", 1},
-    {"shift", KEY_SHIFT, "LENGTH", 0,
-     "With --random: largest shift in each coordinate [m] (default: a tenth of the smallest body)", 2},
-    {"turn", KEY_TURN, "ANGLE", 0, "With --random: largest rotation [rad] (default: 0.2)", 2},
-    {"seed", KEY_SEED, "N", 0, "With --random: seed of the random numbers (default: 1)", 2},
-    {"device", 'D', "NAME", 0,
+static const AppOption option_table[] = {
+    {"poses", 0, "FILE",
+     "Poses, a line of 12 numbers each: a rotation R row by row, then a shift t, for x' = R x + t", 1,
+     CLI_TEXT, CLI_TO(Options, file)},
+    {"random", 0, "N", "N random poses around that of the scene", 1, CLI_INTEGER,
+     CLI_TO(Options, random_count), 1, INT_MAX / 16},
+    {"body", 0, "NAME", "The body or obstacle that is posed (default: the first)", 1, CLI_TEXT,
+     CLI_TO(Options, body)},
+    {"shift", 0, "LENGTH",
+     "With --random: largest shift in each coordinate [m] (default: a tenth of the smallest body)", 2,
+     CLI_NUMBER, CLI_TO(Options, shift), 0, 1e300, .mark_offset = offsetof(Options, has_shift)},
+    {"turn", 0, "ANGLE", "With --random: largest rotation [rad] (default: 0.2)", 2, CLI_NUMBER,
+     CLI_TO(Options, turn), 0, 1e3, .mark_offset = offsetof(Options, has_turn)},
+    {"seed", 0, "N", "With --random: seed of the random numbers (default: 1)", 2, CLI_SEED,
+     CLI_TO(Options, seed), .mark_offset = offsetof(Options, has_seed)},
+    {"device", 'D', "NAME",
      "host, opencl, cuda or auto, or with a number (opencl:1); default: this processor's vectors. The "
      "answers are "
      "the same to the bit",
-     3},
-    {"set", 's', "KEY=VALUE", 0, "Replace a value of the scene; may be repeated", 3},
-    {"threads", 't', "N", 0, "Use N threads (default: all)", 3},
-    {"output", 'o', "FILE", 0, "Write the table there (default: standard output)", 3},
+     3, CLI_TEXT, CLI_TO(Options, device)},
+    {"set", 's', "KEY=VALUE", "Replace a value of the scene; may be repeated", 3, CLI_REPEATED,
+     CLI_TO(Options, overrides), .most = APP_MAX_OVERRIDES, .example = "--set",
+     .count_offset = offsetof(Options, override_count)},
+    {"threads", 't', "N", "Use N threads (default: all)", 3, CLI_INTEGER, CLI_TO(Options, threads), 1,
+     APP_CLI_MOST_THREADS},
+    {"output", 'o', "FILE", "Write the table there (default: standard output)", 3, CLI_TEXT,
+     CLI_TO(Options, output)},
     {0},
 };
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case KEY_POSES:
-    options->file = text;
-    break;
-  case KEY_RANDOM:
-    options->random_count = (int)app_argument_integer(state, "random", text, 1, INT_MAX / 16);
-    break;
-  case KEY_BODY:
-    options->body = text;
-    break;
-  case KEY_SEED:
-    options->seed = app_argument_seed(state, text);
-    options->drawing = "seed";
-    break;
-  case KEY_SHIFT:
-    options->shift = app_argument_number(state, "shift", text, 0, 1e300);
-    options->drawing = "shift";
-    break;
-  case KEY_TURN:
-    options->turn = app_argument_number(state, "turn", text, 0, 1e3);
-    options->drawing = "turn";
-    break;
-  case 'D':
-    options->device = text;
-    break;
-  case 's':
-    app_argument_add(state, "--set", text, APP_MAX_OVERRIDES, options->overrides, &options->override_count);
-    break;
-  case 't':
-    options->threads = app_argument_threads(state, text);
-    break;
-  case 'o':
-    options->output = text;
-    break;
-  case ARGP_KEY_ARG:
-    if (options->scene) argp_error(state, "'%s' is one argument too many: poses takes one scene", text);
-    options->scene = text;
-    break;
-  case ARGP_KEY_END:
-    if (!options->scene)
-      argp_error(state, "name a scene, as in tetlap poses examples/02_two_blocks.yaml --random 100");
-    if (!options->file == !options->random_count) argp_error(state, "give either --poses FILE or --random N");
-    if (options->drawing && !options->random_count)
-      argp_error(state,
-                 "--%s is of random poses, and those of --poses are as in its file; leave it out, or give "
-                 "--random N",
-                 options->drawing);
-    break;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-  return 0;
-}
 
 static Status find_body(const FemModel *model, const char *name, int *body) {
   char known[1024];
@@ -195,23 +146,39 @@ static Status run(const Options *options) {
   return status;
 }
 
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .args_doc = "SCENE",
-    .doc = "Evaluate many rigid poses of one of a scene's bodies against all others: a line a pose with the "
-           "overlap volume V [m³], the force f = −∂V/∂t [m²] and the moment m [m³] about the body's centre "
-           "that a pressure of 1 Pa would exert on it. Obstacles without elements are left out. "
-           "See docs/devices.md."};
+static void check(struct argp_state *state, void *given) {
+  const Options *options = given;
+  const char *drawing = options->has_turn    ? "turn"
+                        : options->has_shift ? "shift"
+                        : options->has_seed  ? "seed"
+                                             : NULL;
+  if (!options->file == !options->random_count) argp_error(state, "give either --poses FILE or --random N");
+  if (drawing && !options->random_count)
+    argp_error(
+        state,
+        "--%s is of random poses, and those of --poses are as in its file; leave it out, or give --random N",
+        drawing);
+}
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {.seed = 1, .shift = -1, .turn = 0.2};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_poses, argument_count, arguments, &options);
   return app_cli_command_end(run(&options));
 }
 
-const AppCommand app_command_poses = {.name = "poses",
-                                      .help = "overlap volume and wrench of many poses of a body",
-                                      .argp = &argp,
-                                      .run = run_command,
-                                      .has_threads = true};
+const AppCommand app_command_poses = {
+    .name = "poses",
+    .help = "overlap volume and wrench of many poses of a body",
+    .options = option_table,
+    .arguments =
+        &(const AppArguments){"SCENE", offsetof(Options, scene), 1,
+                              .missing =
+                                  "name a scene, as in tetlap poses examples/02_two_blocks.yaml --random 100",
+                              .excess = "'%s' is one argument too many: poses takes one scene"},
+    .doc = "Evaluate many rigid poses of one of a scene's bodies against all others: a line a pose with the "
+           "overlap volume V [m³], the force f = −∂V/∂t [m²] and the moment m [m³] about the body's centre "
+           "that a pressure of 1 Pa would exert on it. Obstacles without elements are left out. "
+           "See docs/devices.md.",
+    .check = check,
+    .run = run_command,
+    .has_threads = true};

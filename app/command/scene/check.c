@@ -5,11 +5,12 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "app/cli/ranks.h"
 #include "app/job/job.h"
 #include "base/cpu.h"
 #include "base/files/record.h"
+#include "base/ranks.h"
 #include "base/text.h"
 #include "fem/effect/effect.h"
 #include "fem/measure/thickness.h"
@@ -378,43 +379,25 @@ static Status check(const Options *options) {
   return status;
 }
 
-enum { KEY_RANKS = 256 };
-
-static const struct argp_option option_table[] = {
-    {"ranks", KEY_RANKS, "N", 0, "Say how N processes would share it, and the memory of each (tetlap-mpi)",
-     1},
+static const AppOption option_table[] = {
+    {"ranks", 0, "N", "Say how N processes would share it, and the memory of each (tetlap-mpi)", 1,
+     CLI_INTEGER, CLI_TO(Options, rank_count), 1, RANKS_MOST},
+    {.table = app_job_options, .offset = offsetof(Options, job)},
     {0},
 };
 
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &options->job;
-    return 0;
-  case KEY_RANKS:
-    options->rank_count = app_argument_ranks(state, text);
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
-
-static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
-static const struct argp argp = {.options = option_table,
-                                 .parser = parse,
-                                 .args_doc = "SCENE",
-                                 .doc = "Say what a run of SCENE would do, without running.",
-                                 .children = children};
-
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_check, argument_count, arguments, &options);
   app_job_prepare(&options.job);
   Status status = options.rank_count > 0 ? app_ranks_become() : STATUS_OK;
   if (!status) status = check(&options);
   return app_cli_command_end(status);
 }
 
-const AppCommand app_command_check = {
-    .name = "check", .help = "say what a run would do, without running", .argp = &argp, .run = run_command};
+const AppCommand app_command_check = {.name = "check",
+                                      .help = "say what a run would do, without running",
+                                      .options = option_table,
+                                      .arguments = &app_job_scene,
+                                      .doc = "Say what a run of SCENE would do, without running.",
+                                      .run = run_command};

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "app/cli/ranks.h"
 #include "app/compare/comparison.h"
 #include "app/job/folder.h"
@@ -29,57 +29,26 @@ typedef struct CompareOptions {
   int rank_count;
 } CompareOptions;
 
-enum { KEY_REFERENCE = 256, KEY_AUDIT, KEY_AUDIT_ONLY, KEY_WALL, KEY_RANKS };
-
-static const struct argp_option option_table[] = {
-    {"overlap", 'm', "NAME,...", 0, "The overlap models to compare", 1},
-    {"reference", KEY_REFERENCE, "NAME", 0,
-     "The model that the others are compared with (default: the first)", 1},
-    {"audit", KEY_AUDIT, "K", 0,
+static const AppOption option_table[] = {
+    {"overlap", 'm', "NAME,...", "The overlap models to compare", 1, CLI_LIST,
+     CLI_TO(CompareOptions, overlaps), .most = APP_MAX_MODELS, .example = "clip,exact",
+     .count_offset = offsetof(CompareOptions, overlap_count)},
+    {"reference", 0, "NAME", "The model that the others are compared with (default: the first)", 1, CLI_TEXT,
+     CLI_TO(CompareOptions, reference)},
+    {"audit", 0, "K",
      "Evaluate all models in every K-th step of the reference with overlapping elements (default 10; 0: "
      "never)",
-     1},
-    {"audit-only", KEY_AUDIT_ONLY, "NAME,...", 0,
-     "Models that take part in the audit but get no run of their own", 1},
-    {"wall", KEY_WALL, "SECONDS", 0, "Stop a model's run after this wall time (default: never)", 1},
-    {"ranks", KEY_RANKS, "N", 0, "Share each run among N processes of this machine (tetlap-mpi)", 1},
+     1, CLI_INTEGER, CLI_TO(CompareOptions, audit_every), 0, INT_MAX},
+    {"audit-only", 0, "NAME,...", "Models that take part in the audit but get no run of their own", 1,
+     CLI_LIST, CLI_TO(CompareOptions, audited), .most = APP_MAX_MODELS, .example = "exact,cgal",
+     .count_offset = offsetof(CompareOptions, audited_count)},
+    {"wall", 0, "SECONDS", "Stop a model's run after this wall time (default: never)", 1, CLI_NUMBER,
+     CLI_TO(CompareOptions, wall_s), 1e-3, 1e7},
+    {"ranks", 0, "N", "Share each run among N processes of this machine (tetlap-mpi)", 1, CLI_INTEGER,
+     CLI_TO(CompareOptions, rank_count), 1, RANKS_MOST},
+    {.table = app_job_options, .offset = offsetof(CompareOptions, job)},
     {0},
 };
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  CompareOptions *options = state->input;
-  switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &options->job;
-    break;
-  case 'm':
-    options->overlap_count =
-        app_argument_list(state, "overlap", text, "clip,exact", APP_MAX_MODELS, options->overlaps);
-    break;
-  case KEY_REFERENCE:
-    options->reference = text;
-    break;
-  case KEY_WALL:
-    options->wall_s = app_argument_number(state, "wall", text, 1e-3, 1e7);
-    break;
-  case KEY_RANKS:
-    options->rank_count = app_argument_ranks(state, text);
-    break;
-  case KEY_AUDIT_ONLY:
-    options->audited_count =
-        app_argument_list(state, "audit-only", text, "exact,cgal", APP_MAX_MODELS, options->audited);
-    break;
-  case KEY_AUDIT:
-    options->audit_every = (int)app_argument_integer(state, "audit", text, 0, INT_MAX);
-    break;
-  case ARGP_KEY_END:
-    if (!options->overlap_count) argp_error(state, "name the models, as in --overlap clip,exact");
-    break;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-  return 0;
-}
 
 static Status add_model(AppComparison *comparison, const FemSceneDef *scene, const char *source,
                         bool is_driven) {
@@ -312,16 +281,14 @@ static Status compare(AppComparison *comparison, CompareOptions *options) {
   return STATUS_OK;
 }
 
-static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
-static const struct argp argp = {.options = option_table,
-                                 .parser = parse,
-                                 .args_doc = "SCENE",
-                                 .doc = "Run a scene with several overlap models and compare the results.",
-                                 .children = children};
+static void check(struct argp_state *state, void *options) {
+  if (!((const CompareOptions *)options)->overlap_count)
+    argp_error(state, "name the models, as in --overlap clip,exact");
+}
 
 static int run_command(int argument_count, char **arguments) {
   CompareOptions options = {.audit_every = 10};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_compare, argument_count, arguments, &options);
   app_job_prepare(&options.job);
   AppComparison *comparison = memory_zeroed(1, sizeof *comparison);
   Status status = comparison ? app_ranks_start(options.rank_count) : status_no_memory("the comparison");
@@ -332,9 +299,13 @@ static int run_command(int argument_count, char **arguments) {
   return status_exit_code(status);
 }
 
-const AppCommand app_command_compare = {.name = "compare",
-                                        .help = "run a scene with several overlap models and compare them",
-                                        .argp = &argp,
-                                        .run = run_command,
-                                        .has_threads = true,
-                                        .has_ranks = true};
+const AppCommand app_command_compare = {
+    .name = "compare",
+    .help = "run a scene with several overlap models and compare them",
+    .options = option_table,
+    .arguments = &app_job_scene,
+    .doc = "Run a scene with several overlap models and compare the results.",
+    .check = check,
+    .run = run_command,
+    .has_threads = true,
+    .has_ranks = true};

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/scene/mesh.h"
 
-#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "base/files/record.h"
 #include "base/log.h"
 #include "fem/mesh/mesh.h"
@@ -19,32 +18,12 @@ typedef struct Options {
   bool is_json;
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"size", 's', "LENGTH", 0, "Target edge length of a .stl or .geo, in its units", 0},
-    {"json", 'j', NULL, 0, "Print JSON", 0},
+static const AppOption option_table[] = {
+    {"size", 's', "LENGTH", "Target edge length of a .stl or .geo, in its units", 0, CLI_POSITIVE,
+     CLI_TO(Options, size)},
+    {"json", 'j', NULL, "Print JSON", 0, CLI_FLAG, CLI_TO(Options, is_json)},
     {0},
 };
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case 's':
-    options->size = app_argument_positive(state, "size", text);
-    return 0;
-  case 'j':
-    options->is_json = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (options->path) argp_error(state, "'%s' is one argument too many: give one mesh file", text);
-    options->path = text;
-    return 0;
-  case ARGP_KEY_NO_ARGS:
-    argp_error(state, "which mesh? give a file, as tetlap mesh meshes/block.msh");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
 
 // What an analyst should know before using the mesh, one sentence each.
 enum { MAX_REMARKS = 7, REMARK_SIZE = 200 };
@@ -196,21 +175,20 @@ static Status report(const Options *options) {
   return status;
 }
 
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .args_doc = "FILE",
-    .doc =
-        "Print a mesh's counts, volume, quality and faults: .msh, .mesh, .vtk, .node/.ele; a .stl or .geo is "
-        "meshed first. Lengths are taken as metres."};
-
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_mesh, argument_count, arguments, &options);
   return app_cli_command_end(report(&options));
 }
 
-const AppCommand app_command_mesh = {.name = "mesh",
-                                     .help = "print a mesh's counts, volume, quality and faults",
-                                     .argp = &argp,
-                                     .run = run_command};
+const AppCommand app_command_mesh = {
+    .name = "mesh",
+    .help = "print a mesh's counts, volume, quality and faults",
+    .options = option_table,
+    .arguments = &(const AppArguments){"FILE", offsetof(Options, path), 1,
+                                       .missing = "which mesh? give a file, as tetlap mesh meshes/block.msh",
+                                       .excess = "'%s' is one argument too many: give one mesh file"},
+    .doc =
+        "Print a mesh's counts, volume, quality and faults: .msh, .mesh, .vtk, .node/.ele; a .stl or .geo is "
+        "meshed first. Lengths are taken as metres.",
+    .run = run_command};

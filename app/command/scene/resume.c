@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/scene/resume.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "app/cli/ranks.h"
 #include "app/cli/versions.h"
 #include "app/command/scene/run.h"
@@ -12,54 +13,24 @@
 #include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/ranks.h"
 #include "fem/run/checkpoint/checkpoint.h"
 
-enum { KEY_STRICT = 256, KEY_RANKS };
-
-static const struct argp_option option_table[] = {
-    {"threads", 't', "N", 0, "Use N threads (default: the scene's, else all)", 1},
-    {"strict", KEY_STRICT, NULL, 0,
-     "Energy gained beyond 0.1 % of the scene's, and bodies that pass through each other, are an error", 1},
-    {"ranks", KEY_RANKS, "N", 0, "Share the run among N processes of this machine (tetlap-mpi)", 1},
-    {"json", 'j', NULL, 0, "Print the result as JSON on standard output", 2},
-    {"quiet", 'q', NULL, 0, "Say nothing but errors", 2},
-    {"verbose", 'v', NULL, 0, "Print a line per step, and why one is taken back", 2},
+static const AppOption option_table[] = {
+    {"threads", 't', "N", "Use N threads (default: the scene's, else all)", 1, CLI_INTEGER,
+     CLI_TO(AppRunOptions, job.threads), 1, APP_CLI_MOST_THREADS},
+    {"strict", 0, NULL,
+     "Energy gained beyond 0.1 % of the scene's, and bodies that pass through each other, are an error", 1,
+     CLI_FLAG, CLI_TO(AppRunOptions, is_strict)},
+    {"ranks", 0, "N", "Share the run among N processes of this machine (tetlap-mpi)", 1, CLI_INTEGER,
+     CLI_TO(AppRunOptions, rank_count), 1, RANKS_MOST},
+    {"json", 'j', NULL, "Print the result as JSON on standard output", 2, CLI_FLAG,
+     CLI_TO(AppRunOptions, job.is_json)},
+    {"quiet", 'q', NULL, "Say nothing but errors", 2, CLI_FLAG, CLI_TO(AppRunOptions, job.is_quiet)},
+    {"verbose", 'v', NULL, "Print a line per step, and why one is taken back", 2, CLI_FLAG,
+     CLI_TO(AppRunOptions, job.is_verbose)},
     {0},
 };
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  AppRunOptions *options = state->input;
-  switch (key) {
-  case 't':
-    options->job.threads = app_argument_threads(state, text);
-    break;
-  case KEY_STRICT:
-    options->is_strict = true;
-    break;
-  case KEY_RANKS:
-    options->rank_count = app_argument_ranks(state, text);
-    break;
-  case 'j':
-    options->job.is_json = true;
-    break;
-  case 'q':
-    options->job.is_quiet = true;
-    break;
-  case 'v':
-    options->job.is_verbose = true;
-    break;
-  case ARGP_KEY_ARG:
-    if (options->job.directory) argp_error(state, "one run at a time; '%s' is the second", text);
-    options->job.directory = text;
-    break;
-  case ARGP_KEY_END:
-    if (!options->job.directory) argp_error(state, "name the folder that the run wrote into");
-    break;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-  return 0;
-}
 
 static Status read_checkpoint(const char *directory, const char *path, FemCheckpoint *checkpoint) {
   if (file_exists(directory) && !file_exists(path))
@@ -116,26 +87,25 @@ static Status resume(AppRunOptions *options) {
   return status;
 }
 
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .args_doc = "DIR",
-    .doc = "Continue a run that was stopped or killed, from its last checkpoint in DIR. The files are the "
-           "same, to the last bit, as those of an uninterrupted run. The scene, its meshes and weights and "
-           "the program must be unchanged."};
-
 static int run_command(int argument_count, char **arguments) {
   AppRunOptions options = {0};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_resume, argument_count, arguments, &options);
   app_job_prepare(&options.job);
   Status status = app_ranks_start(options.rank_count);
   if (status) log_error("%s", status_message());
   return status_exit_code(status ? status : resume(&options));
 }
 
-const AppCommand app_command_resume = {.name = "resume",
-                                       .help = "continue a run that was stopped or killed",
-                                       .argp = &argp,
-                                       .run = run_command,
-                                       .has_threads = true,
-                                       .has_ranks = true};
+const AppCommand app_command_resume = {
+    .name = "resume",
+    .help = "continue a run that was stopped or killed",
+    .options = option_table,
+    .arguments = &(const AppArguments){"DIR", offsetof(AppRunOptions, job.directory), 1,
+                                       .missing = "name the folder that the run wrote into",
+                                       .excess = "one run at a time; '%s' is the second"},
+    .doc = "Continue a run that was stopped or killed, from its last checkpoint in DIR. The files are the "
+           "same, to the last bit, as those of an uninterrupted run. The scene, its meshes and weights and "
+           "the program must be unchanged.",
+    .run = run_command,
+    .has_threads = true,
+    .has_ranks = true};

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/scene/run.h"
 
-#include <math.h>
 #include <stdio.h>
 
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "app/cli/ranks.h"
 #include "app/cli/versions.h"
 #include "app/job/beacon.h"
@@ -21,41 +20,19 @@
 #include "fem/run/check/choice.h"
 #include "fem/run/checkpoint/checkpoint.h"
 
-enum { KEY_CAPTURE = 256, KEY_STRICT, KEY_RANKS };
-
-static const struct argp_option option_table[] = {
-    {"overlap", 'm', "NAME", 0, "Take this overlap model instead of the scene's", 1},
-    {"capture", KEY_CAPTURE, "FILE", 0,
-     "Keep the pairs of every step whose boxes meet, labelled, as a data set", 1},
-    {"strict", KEY_STRICT, NULL, 0,
-     "Energy gained beyond 0.1 % of the scene's, and bodies that pass through each other, are an error", 1},
-    {"ranks", KEY_RANKS, "N", 0, "Share the run among N processes of this machine (tetlap-mpi)", 1},
+static const AppOption option_table[] = {
+    {"overlap", 'm', "NAME", "Take this overlap model instead of the scene's", 1, CLI_TEXT,
+     CLI_TO(AppRunOptions, overlap)},
+    {"capture", 0, "FILE", "Keep the pairs of every step whose boxes meet, labelled, as a data set", 1,
+     CLI_TEXT, CLI_TO(AppRunOptions, capture)},
+    {"strict", 0, NULL,
+     "Energy gained beyond 0.1 % of the scene's, and bodies that pass through each other, are an error", 1,
+     CLI_FLAG, CLI_TO(AppRunOptions, is_strict)},
+    {"ranks", 0, "N", "Share the run among N processes of this machine (tetlap-mpi)", 1, CLI_INTEGER,
+     CLI_TO(AppRunOptions, rank_count), 1, RANKS_MOST},
+    {.table = app_job_options, .offset = offsetof(AppRunOptions, job)},
     {0},
 };
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  AppRunOptions *options = state->input;
-  switch (key) {
-  case ARGP_KEY_INIT:
-    state->child_inputs[0] = &options->job;
-    break;
-  case 'm':
-    options->overlap = text;
-    break;
-  case KEY_CAPTURE:
-    options->capture = text;
-    break;
-  case KEY_STRICT:
-    options->is_strict = true;
-    break;
-  case KEY_RANKS:
-    options->rank_count = app_argument_ranks(state, text);
-    break;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-  return 0;
-}
 
 static void announce(const AppJob *job) {
   log_info("%s: %d %s, %d vertices, %d tetrahedra, %d unknowns, solver %s", job->scene.path,
@@ -204,14 +181,6 @@ Status app_run_execute(const AppRunOptions *options) {
   return status;
 }
 
-static const struct argp_child children[] = {{.argp = &app_job_argp}, {0}};
-static const struct argp argp = {.options = option_table,
-                                 .parser = parse,
-                                 .args_doc = "SCENE",
-                                 .doc =
-                                     "Run a scene: frames for ParaView, a history and a summary are written.",
-                                 .children = children};
-
 static Status check_capture(const AppRunOptions *options) {
   if (options->capture && file_is_same(options->capture, options->job.scene_path))
     return status_fail(STATUS_USAGE,
@@ -225,7 +194,7 @@ static Status check_capture(const AppRunOptions *options) {
 
 static int run_command(int argument_count, char **arguments) {
   AppRunOptions options = {0};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_run, argument_count, arguments, &options);
   app_job_prepare(&options.job);
   Status status = app_ranks_start(options.rank_count);
   if (!status) status = check_capture(&options);
@@ -236,9 +205,12 @@ static int run_command(int argument_count, char **arguments) {
   return status_exit_code(status);
 }
 
-const AppCommand app_command_run = {.name = "run",
-                                    .help = "run a scene and write frames, history and summary",
-                                    .argp = &argp,
-                                    .run = run_command,
-                                    .has_threads = true,
-                                    .has_ranks = true};
+const AppCommand app_command_run = {
+    .name = "run",
+    .help = "run a scene and write frames, history and summary",
+    .options = option_table,
+    .arguments = &app_job_scene,
+    .doc = "Run a scene: frames for ParaView, a history and a summary are written.",
+    .run = run_command,
+    .has_threads = true,
+    .has_ranks = true};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/scene/stress.h"
 
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "app/cli/versions.h"
 #include "app/job/job.h"
 #include "app/stress/all.h"
@@ -9,64 +9,30 @@
 #include "base/cpu.h"
 #include "base/log.h"
 
-enum { KEY_ONLY = 256, KEY_PAIRS, KEY_SCENES, KEY_QUICK, KEY_LIMIT };
-
 typedef struct Options {
   AppStressOptions stress;
   const char *json;
   bool is_quiet;
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"only", KEY_ONLY, "NAME", 0, "Only cases with NAME in their name", 0},
-    {"overlap", 'm', "NAME,...", 0,
+static const AppOption option_table[] = {
+    {"only", 0, "NAME", "Only cases with NAME in their name", 0, CLI_TEXT, CLI_TO(Options, stress.only)},
+    {"overlap", 'm', "NAME,...",
      "Only these overlap models, with --pairs weights files, too; any: scenes in which none takes part "
      "(default: all; with --quick clip and geo)",
-     0},
-    {"pairs", KEY_PAIRS, NULL, 0, "Only classes of pairs", 0},
-    {"scenes", KEY_SCENES, NULL, 0, "Only scenes", 0},
-    {"quick", KEY_QUICK, NULL, 0, "Fewer members of each class, and only the scenes that take a moment", 0},
-    {"limit", KEY_LIMIT, "SECONDS", 0,
-     "Stop a scene with a model after this processor time (default: the case's own, 60 or more)", 0},
-    {"json", 'j', "FILE", 0, "Write the table and all that was measured to FILE, anew after every row", 0},
-    {"quiet", 'q', NULL, 0, "Say errors only", 0},
+     0, CLI_WORDS, CLI_TO(Options, stress.models), .example = "clip,geo"},
+    {"pairs", 0, NULL, "Only classes of pairs", 0, CLI_FLAG, CLI_TO(Options, stress.has_pairs)},
+    {"scenes", 0, NULL, "Only scenes", 0, CLI_FLAG, CLI_TO(Options, stress.has_scenes)},
+    {"quick", 0, NULL, "Fewer members of each class, and only the scenes that take a moment", 0, CLI_FLAG,
+     CLI_TO(Options, stress.is_quick)},
+    {"limit", 0, "SECONDS",
+     "Stop a scene with a model after this processor time (default: the case's own, 60 or more)", 0,
+     CLI_POSITIVE, CLI_TO(Options, stress.limit_s)},
+    {"json", 'j', "FILE", "Write the table and all that was measured to FILE, anew after every row", 0,
+     CLI_TEXT, CLI_TO(Options, json)},
+    {"quiet", 'q', NULL, "Say errors only", 0, CLI_FLAG, CLI_TO(Options, is_quiet)},
     {0},
 };
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case KEY_ONLY:
-    options->stress.only = text;
-    return 0;
-  case 'm':
-    options->stress.models = app_argument_words(state, "overlap", text, "clip,geo");
-    return 0;
-  case KEY_PAIRS:
-    options->stress.has_pairs = true;
-    return 0;
-  case KEY_SCENES:
-    options->stress.has_scenes = true;
-    return 0;
-  case KEY_QUICK:
-    options->stress.is_quick = true;
-    return 0;
-  case KEY_LIMIT:
-    options->stress.limit_s = app_argument_positive(state, "limit", text);
-    return 0;
-  case 'j':
-    options->json = text;
-    return 0;
-  case 'q':
-    options->is_quiet = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    argp_error(state, "'%s' is one argument too many: there are only options, as --only %s", text, text);
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
 
 static Status write_json(const AppStress *stress, const char *path) {
   Record *record = record_new();
@@ -97,15 +63,9 @@ static Status print_and_judge(const Options *options, const AppStress *stress) {
   return failed ? status_fail(STATUS_SOLVER, "%d of %d hard cases failed", failed, stress->count) : STATUS_OK;
 }
 
-static const struct argp argp = {
-    .options = option_table,
-    .parser = parse,
-    .doc = "Hard cases: every class of pairs and every hard scene with every overlap model, each checked "
-           "against physics. docs/stability.md explains the verdicts."};
-
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_stress, argument_count, arguments, &options);
   if (!options.stress.has_pairs && !options.stress.has_scenes)
     options.stress.has_pairs = options.stress.has_scenes = true;
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
@@ -121,9 +81,14 @@ static int run_command(int argument_count, char **arguments) {
   return status_exit_code(status ? status : concluded);
 }
 
-const AppCommand app_command_stress = {.name = "stress",
-                                       .help =
-                                           "check every hard case against physics, with every overlap model",
-                                       .argp = &argp,
-                                       .run = run_command,
-                                       .has_threads = true};
+const AppCommand app_command_stress = {
+    .name = "stress",
+    .help = "check every hard case against physics, with every overlap model",
+    .options = option_table,
+    .arguments =
+        &(const AppArguments){.excess =
+                                  "'%s' is one argument too many: there are only options, as --only NAME"},
+    .doc = "Hard cases: every class of pairs and every hard scene with every overlap model, each checked "
+           "against physics. docs/stability.md explains the verdicts.",
+    .run = run_command,
+    .has_threads = true};

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/cli/argument.h"
+#include "app/cli/parse.h"
 #include "app/job/job.h"
 #include "app/sweep/child.h"
 #include "app/sweep/crew.h"
@@ -12,8 +12,6 @@
 #include "base/cpu.h"
 #include "base/log.h"
 #include "base/memory.h"
-
-enum { KEY_AGAIN = 256 };
 
 typedef struct Options {
   const char *scene_path, *directory, *overlap;
@@ -24,76 +22,32 @@ typedef struct Options {
   bool again, is_json, is_markdown, is_quiet;
 } Options;
 
-static const struct argp_option option_table[] = {
-    {"vary", 'V', "KEY=VALUES", 0,
+static const AppOption option_table[] = {
+    {"vary", 'V', "KEY=VALUES",
      "Take these values of a key: LOW..HIGH:COUNT, LOW..HIGH:COUNT,log or A,B,C; may be repeated: every "
      "value with every other",
-     1},
-    {"set", 's', "KEY=VALUE", 0, "Replace a value of the scene in all runs; may be repeated", 1},
-    {"overlap", 'm', "NAME", 0, "Take this overlap model instead of the scene's", 1},
-    {"output", 'o', "DIR", 0, "Write into DIR (default: out/ and the scene's name, -sweep)", 1},
-    {"jobs", 'J', "N", 0, "Runs at once (default: one a core)", 1},
-    {"threads", 't', "N", 0, "Threads of each run (default: the cores shared among the runs)", 1},
-    {"repeat", 'r', "N", 0, "Run each N times, in turns, for times: the table has medians (with --jobs 1)",
-     1},
-    {"again", KEY_AGAIN, NULL, 0, "Try again the runs that the solver gave up in an earlier sweep", 1},
-    {"json", 'j', NULL, 0, "Print the table as JSON on standard output", 2},
-    {"markdown", 'M', NULL, 0, "Print the table as Markdown", 2},
-    {"quiet", 'q', NULL, 0, "Say nothing but errors", 2},
+     1, CLI_REPEATED, CLI_TO(Options, axes), .most = APP_SWEEP_MAX_AXES, .example = "--vary",
+     .count_offset = offsetof(Options, axis_count)},
+    {"set", 's', "KEY=VALUE", "Replace a value of the scene in all runs; may be repeated", 1, CLI_REPEATED,
+     CLI_TO(Options, overrides), .most = APP_MAX_OVERRIDES - APP_SWEEP_MAX_AXES, .example = "--set",
+     .count_offset = offsetof(Options, override_count)},
+    {"overlap", 'm', "NAME", "Take this overlap model instead of the scene's", 1, CLI_TEXT,
+     CLI_TO(Options, overlap)},
+    {"output", 'o', "DIR", "Write into DIR (default: out/ and the scene's name, -sweep)", 1, CLI_TEXT,
+     CLI_TO(Options, directory)},
+    {"jobs", 'J', "N", "Runs at once (default: one a core)", 1, CLI_INTEGER, CLI_TO(Options, jobs), 1,
+     APP_SWEEP_MAX_JOBS},
+    {"threads", 't', "N", "Threads of each run (default: the cores shared among the runs)", 1, CLI_INTEGER,
+     CLI_TO(Options, threads), 1, APP_CLI_MOST_THREADS},
+    {"repeat", 'r', "N", "Run each N times, in turns, for times: the table has medians (with --jobs 1)", 1,
+     CLI_INTEGER, CLI_TO(Options, repeats), 1, APP_SWEEP_MAX_REPEATS},
+    {"again", 0, NULL, "Try again the runs that the solver gave up in an earlier sweep", 1, CLI_FLAG,
+     CLI_TO(Options, again)},
+    {"json", 'j', NULL, "Print the table as JSON on standard output", 2, CLI_FLAG, CLI_TO(Options, is_json)},
+    {"markdown", 'M', NULL, "Print the table as Markdown", 2, CLI_FLAG, CLI_TO(Options, is_markdown)},
+    {"quiet", 'q', NULL, "Say nothing but errors", 2, CLI_FLAG, CLI_TO(Options, is_quiet)},
     {0},
 };
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  Options *options = state->input;
-  switch (key) {
-  case 'V':
-    app_argument_add(state, "--vary", text, APP_SWEEP_MAX_AXES, options->axes, &options->axis_count);
-    return 0;
-  case 's':
-    app_argument_add(state, "--set", text, APP_MAX_OVERRIDES - APP_SWEEP_MAX_AXES, options->overrides,
-                     &options->override_count);
-    return 0;
-  case 'm':
-    options->overlap = text;
-    return 0;
-  case 'o':
-    options->directory = text;
-    return 0;
-  case 'J':
-    options->jobs = (int)app_argument_integer(state, "jobs", text, 1, APP_SWEEP_MAX_JOBS);
-    return 0;
-  case 't':
-    options->threads = app_argument_threads(state, text);
-    return 0;
-  case 'r':
-    options->repeats = (int)app_argument_integer(state, "repeat", text, 1, APP_SWEEP_MAX_REPEATS);
-    return 0;
-  case KEY_AGAIN:
-    options->again = true;
-    return 0;
-  case 'j':
-    options->is_json = true;
-    return 0;
-  case 'M':
-    options->is_markdown = true;
-    return 0;
-  case 'q':
-    options->is_quiet = true;
-    return 0;
-  case ARGP_KEY_ARG:
-    if (options->scene_path) argp_error(state, "one scene at a time; '%s' is the second", text);
-    options->scene_path = text;
-    return 0;
-  case ARGP_KEY_END:
-    if (!options->scene_path) argp_error(state, "name a scene file, as in examples/01_drop.yaml");
-    if (!options->axis_count && options->repeats == 1)
-      argp_error(state,
-                 "say what varies, as in --vary contact.stiffness=1e5..1e9:5,log, or how often to --repeat");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
-  }
-}
 
 static Status parse_axes(const Options *options, AppSweepBase *base) {
   for (; base->axis_count < options->axis_count; base->axis_count++)
@@ -158,21 +112,16 @@ static Status sweep(const Options *options, const char *directory) {
   return status;
 }
 
-static const struct argp argp = {
-    option_table,
-    parse,
-    "SCENE",
-    "Run a scene with every combination of values of some of its keys, side by side: a table and a page with "
-    "plots.\vEach run is a process with a folder of its own, named by its values. The same command, given "
-    "again, completes what is not finished; more values may be added. A run that fails is a line of the "
-    "table; then the exit code is 70.",
-    NULL,
-    NULL,
-    NULL};
+static void check(struct argp_state *state, void *given) {
+  const Options *options = given;
+  if (!options->axis_count && options->repeats == 1)
+    argp_error(state,
+               "say what varies, as in --vary contact.stiffness=1e5..1e9:5,log, or how often to --repeat");
+}
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {.repeats = 1};
-  argp_parse(&argp, argument_count, arguments, 0, NULL, &options);
+  app_cli_parse(&app_command_sweep, argument_count, arguments, &options);
   app_job_prepare(&(AppJobOptions){.is_quiet = options.is_quiet});
   char *directory = options.directory ? memory_copy(options.directory, strlen(options.directory) + 1, 1)
                                       : app_job_default_directory(options.scene_path, "-sweep");
@@ -182,7 +131,19 @@ static int run_command(int argument_count, char **arguments) {
   return status_exit_code(status);
 }
 
-const AppCommand app_command_sweep = {.name = "sweep",
-                                      .help = "run a scene over a grid of values, side by side",
-                                      .argp = &argp,
-                                      .run = run_command};
+const AppCommand app_command_sweep = {
+    .name = "sweep",
+    .help = "run a scene over a grid of values, side by side",
+    .options = option_table,
+    .arguments = &(const AppArguments){"SCENE", offsetof(Options, scene_path), 1,
+                                       .missing = "name a scene file, as in examples/01_drop.yaml",
+                                       .excess = "one scene at a time; '%s' is the second"},
+    .doc =
+        "Run a scene with every combination of values of some of its keys, side by side: a table and a page "
+        "with "
+        "plots.\vEach run is a process with a folder of its own, named by its values. The same command, "
+        "given "
+        "again, completes what is not finished; more values may be added. A run that fails is a line of the "
+        "table; then the exit code is 70.",
+    .check = check,
+    .run = run_command};
