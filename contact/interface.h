@@ -7,6 +7,7 @@
 typedef struct ContactInterface {
   int a, b;         // a < b, or a = b
   double force[3];  // on a [N]; the opposite acts on b
+  double pressed;   // Σ |F_ij|: ∫ p dA, whatever its directions [N]
   double volume;    // Σ V_ij [m³]
   int active_count; // pairs with V > 0
   double area;      // of contact [m²] (contact/pressure/imprint.h)

@@ -32,13 +32,15 @@ static void print_line(const char *label, const char *format, ...) {
 }
 
 // Of a static scene: what went in, and what of it is found again.
-static void print_work(const FemAudit *audit) {
+static void print_work(const FemAudit *audit, bool has_fallen) {
   double lost = fabs(fem_audit_lost(audit));
   print_line("energy:", "%.3g J in the scene (the largest of its parts)", audit->scale);
   print_line("", "%.3g J of work was done on the bodies", audit->work);
   print_line("", "%.3g J of it went into friction and plasticity", audit->dissipated);
   print_line("", "%.3g J (%.2g %%) is the difference of work and energy", lost, 100 * lost / audit->scale);
-  print_line("", "%.3g J of that is undetermined: shorter load steps reduce it", audit->open);
+  if (audit->open > 0)
+    print_line("", "the work may be wrong by %.3g J: shorter load steps reduce that", audit->open);
+  if (has_fallen) print_line("", "bodies have snapped or fallen on the way, which lost energy");
 }
 
 // What was lost, apart into what was asked for and the integrator's own.
@@ -84,7 +86,7 @@ void app_closing_print(const AppJob *job, const FemRunResult *result) {
     print_block("contact:", result->account.contacts[i]);
   print_network(&result->contact.pairs);
   if (result->is_static)
-    print_work(&result->energy.audit);
+    print_work(&result->energy.audit, result->equilibrium.relaxation_steps > 0);
   else
     print_energy(&result->energy.audit, &result->energy.bounds);
   fem_run_describe_statistics(result, text, sizeof text);

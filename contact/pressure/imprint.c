@@ -7,16 +7,15 @@
 
 void contact_imprint_find(const ContactFieldPair *fields, const ContactPatch *patch,
                           ContactInterface *interface) {
-  interface->area = 0;
+  interface->area = interface->pressed = 0;
   Vec3 moment = {0, 0, 0};
-  double weight = 0;
   for (int k = patch->pair_begin; k < patch->pair_end; k++) {
     const ContactFieldPair *field = &fields[k];
     double force = vec3_length(vec3_at(field->force));
     if (!(field->energy > 0)) continue;
     interface->area += contact_field_area(field);
     moment = vec3_add(moment, vec3_scale(force, vec3_at(field->centroid)));
-    weight += force;
+    interface->pressed += force;
   }
-  vec3_store(interface->centre, vec3_scale(1 / weight, moment));
+  vec3_store(interface->centre, vec3_scale(1 / interface->pressed, moment));
 }

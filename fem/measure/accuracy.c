@@ -15,6 +15,8 @@ static_assert(sizeof(FemAccuracyPair) == FEM_ACCURACY_KEPT * sizeof(double), "nu
 
 // A pair is estimated anew where its force has grown by as much as an estimate may err.
 static const double GROWN = 1 + FEM_DOUBT;
+// A peak this much above what two steps in a row have lasts one step.
+static const double BRIEF = 1.5;
 
 Status fem_accuracy_create(FemAccuracy *accuracy, const FemModel *model, const ContactSystem *contact) {
   *accuracy = (FemAccuracy){0};
@@ -24,16 +26,21 @@ Status fem_accuracy_create(FemAccuracy *accuracy, const FemModel *model, const C
   accuracy->pairs = memory_zeroed(count, sizeof *accuracy->pairs);
   accuracy->found = memory_zeroed(count, sizeof *accuracy->found);
   accuracy->places = memory_zeroed(count, sizeof *accuracy->places);
+  accuracy->pressed = memory_zeroed(count, sizeof *accuracy->pressed);
+  accuracy->forces = memory_zeroed(count, sizeof *accuracy->forces);
   accuracy->energies = memory_zeroed((size_t)model->body_count, sizeof *accuracy->energies);
-  return accuracy->pairs && accuracy->found && accuracy->places && accuracy->energies
-             ? STATUS_OK
-             : status_no_memory("the accuracy of contact");
+  bool has_room = accuracy->pairs && accuracy->found && accuracy->places && accuracy->pressed &&
+                  accuracy->forces && accuracy->energies;
+  for (int i = 0; has_room && i < accuracy->count; i++) accuracy->pairs[i].seen = -INFINITY;
+  return has_room ? STATUS_OK : status_no_memory("the accuracy of contact");
 }
 
 void fem_accuracy_destroy(FemAccuracy *accuracy) {
   memory_free(accuracy->pairs);
   memory_free(accuracy->found);
   memory_free(accuracy->places);
+  memory_free(accuracy->pressed);
+  memory_free(accuracy->forces);
   memory_free(accuracy->energies);
   *accuracy = (FemAccuracy){0};
 }
@@ -122,15 +129,15 @@ static Status find_rim(const ContactLayout *layout, const ContactEvaluation *eva
   return STATUS_OK;
 }
 
-// Whether the force of the patch is the largest so far, or more energy is stored at about that force; then
-// `found` holds the values and places.
+// Whether P of the patch is the largest so far, or more energy is stored at about that; then `found` holds
+// the values and places.
 static bool is_largest(const FemAccuracy *accuracy, const ContactInterface *interface, int place, double time,
                        double stored, FemAccuracyPair *found) {
-  double force = vec3_length(vec3_at(interface->force));
   *found = accuracy->pairs[place];
-  if (!(force > found->force)) return force > 0 && stored > GROWN * found->stored;
-  found->force = force;
+  if (!(interface->pressed > found->pressed)) return interface->pressed > 0 && stored > GROWN * found->stored;
+  found->pressed = interface->pressed;
   found->time = time;
+  found->resultant = vec3_length(vec3_at(interface->force));
   found->area = interface->area;
   memcpy(found->centre, interface->centre, sizeof found->centre);
   return true;
@@ -152,7 +159,7 @@ static void find_way(FemAccuracy *accuracy, const FemModel *model, const double 
 
 static Status estimate(const ContactLayout *layout, const ContactEvaluation *evaluation,
                        const ContactPatch *patch, FemAccuracyPair *found) {
-  found->estimated = found->force;
+  found->estimated = found->pressed;
   found->energy = patch->energy;
   found->edge = mean_edge(layout, &evaluation->patches, patch);
   return find_rim(layout, evaluation, patch, &found->rim);
@@ -164,6 +171,11 @@ Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, ContactSy
   const ContactEvaluation *evaluation = contact_system_evaluation(contact);
   accuracy->found_count = 0;
   accuracy->has_energies = false;
+  accuracy->time = state->time;
+  for (int i = 0; i < accuracy->count; i++) {
+    accuracy->pressed[i] = evaluation->interfaces[i].pressed;
+    accuracy->forces[i] = vec3_length(vec3_at(evaluation->interfaces[i].force));
+  }
   for (int p = 0; p < evaluation->patches.patch_count; p++) {
     const ContactPatch *patch = &evaluation->patches.patches[p];
     FemAccuracyPair *found = &accuracy->found[accuracy->found_count];
@@ -173,14 +185,27 @@ Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, ContactSy
     if (patch->energy + elastic > GROWN * found->stored)
       find_way(accuracy, model, state->positions, &layout->interfaces[patch->interface], patch->energy,
                elastic, found);
-    if (found->force > GROWN * found->estimated) TRY(estimate(layout, evaluation, patch, found));
+    if (found->pressed > GROWN * found->estimated) TRY(estimate(layout, evaluation, patch, found));
     accuracy->places[accuracy->found_count++] = patch->interface;
   }
   return STATUS_OK;
 }
 
+// Of a state that was accepted before, where a part of a run begins anew, nothing is new.
+static void follow(FemAccuracyPair *pair, double time, double pressed, double force) {
+  if (!(time > pair->seen)) return;
+  pair->held = fmax(pair->held, fmin(pair->last, pressed));
+  pair->last = pressed;
+  pair->seen = time;
+  if (!(force > pair->force)) return;
+  pair->force = force;
+  pair->force_time = time;
+}
+
 void fem_accuracy_accept(FemAccuracy *accuracy) {
   for (int i = 0; i < accuracy->found_count; i++) accuracy->pairs[accuracy->places[i]] = accuracy->found[i];
+  for (int i = 0; i < accuracy->count; i++)
+    follow(&accuracy->pairs[i], accuracy->time, accuracy->pressed[i], accuracy->forces[i]);
   accuracy->found_count = 0;
 }
 
@@ -189,11 +214,14 @@ FemEstimate fem_accuracy_estimate(const FemAccuracyPair *pair, const FemModel *m
   double depth = 2 * pair->energy / pair->estimated, tolerance = fem_model_position_tolerance(model);
   FemEstimate estimate = {.give = pair->with / (pair->with + pair->elastic[0] + pair->elastic[1]),
                           .rim = pair->rim,
+                          .depth = depth,
                           .depth_over_edge = depth / pair->edge,
                           .tolerance_over_depth = scene->is_static ? NAN : tolerance / depth,
                           .elements_across = sqrt(pair->area) / pair->edge,
                           .stiffness = stiffness,
-                          .tolerance_for = NAN};
+                          .tolerance_for = NAN,
+                          .is_brief = !scene->is_static && pair->seen > pair->time &&
+                                      pair->pressed > BRIEF * pair->held};
   double by_give = estimate.give / (1 - estimate.give) * (1 - FEM_DOUBT) / FEM_DOUBT;
   double by_rim = isnan(estimate.rim) ? 0 : estimate.rim / FEM_DOUBT;
   estimate.stiffness_for = stiffness * fmax(1, fmax(by_give, by_rim));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An estimate of the error of contact for each pair of bodies, at the state in which the two pressed each
-// other most.
+// other most: P = ∫ p dA = Σ |F_ij|, which a shaft in a hole has even where the resultant is none.
 //
 // give    The interface is a spring in series with the bodies: with the potential U of the pair and the
 //         elastic energies E_a, E_b of the two (0 of an obstacle), each of them ½ force · displacement,
@@ -18,11 +18,13 @@
 //           rim = Σ [ c (w_i |g_B| + w_j |g_A|) − F_k · n ] / Σ F_k · n.
 //
 //         It is proportional to the depth, so to 1/c.
-// depth   D = 2 U / F, the mean depth of the overlap, over the mean edge of the elements that take part:
+// depth   D = 2 U / P, the mean depth of the overlap, over the mean edge of the elements that take part:
 //         how thick the layer of contact is in elements.
 // known   the position tolerance of a time step over D: by how much the depth is undetermined in one step
 //         of a motion. Forces at rest are balanced more closely than that (docs/time.md).
 // across  √area over that edge: how many elements resolve the patch.
+// held    the largest P that two accepted steps in a row have: a peak that lasts one step of a motion is far
+//         above it.
 #ifndef TETLAP_FEM_MEASURE_ACCURACY_H
 #define TETLAP_FEM_MEASURE_ACCURACY_H
 
@@ -30,15 +32,20 @@
 #include "contact/system.h"
 #include "fem/effect/system.h"
 
-// Of one interface, at its largest force so far; what stands below `estimated` at a force that is smaller by
-// a hundredth at most. `give` is taken at the state in which most energy is stored while the two touch: an
+// Of one interface, at its largest P so far; what stands below `estimated` at a P that is smaller by a
+// hundredth at most. `give` is taken at the state in which most energy is stored while the two touch: an
 // impact compresses the interface before the body behind it. Numbers only, for checkpoints.
 typedef struct FemAccuracyPair {
-  double force;      // 0: the two never touched [N]
-  double time;       // [s]
+  double force;      // the largest resultant [N]
+  double force_time; // [s]
+  double pressed;    // the largest P; 0: the two never touched [N]
+  double time;       // of that [s]
+  double resultant;  // then [N]
   double area;       // [m²]
   double centre[3];  // of pressure [m]
-  double estimated;  // at that force [N]
+  double held;       // the largest that two steps in a row have [N]
+  double last, seen; // P of the last accepted state [N], and its time [s]
+  double estimated;  // P then [N]
   double energy;     // U [J]
   double elastic[2]; // E_a, E_b [J]
   double with;       // U of the same state [J]
@@ -46,13 +53,16 @@ typedef struct FemAccuracyPair {
   double edge;       // [m]
   double rim;        // NaN: the potential is not `field`
 } FemAccuracyPair;
-enum { FEM_ACCURACY_KEPT = 14 };
+enum { FEM_ACCURACY_KEPT = 20 };
 
 typedef struct FemAccuracy {
   int count;
   FemAccuracyPair *pairs; // in the order of contact_system_interfaces     (count)
   FemAccuracyPair *found; // in the state that is evaluated               (found_count)
   int *places;            // whose they are                               (found_count)
+  double *pressed;        // P of that state [N]                          (count)
+  double *forces;         // and the resultants [N]                       (count)
+  double time;            // of that state [s]
   int found_count;
   double *energies;  // scratch: of bodies                                (body_count)
   bool has_energies; // of the state that is looked at
@@ -72,10 +82,12 @@ void fem_accuracy_accept(FemAccuracy *accuracy);
 // What follows for one pair.
 typedef struct FemEstimate {
   double give, rim, depth_over_edge, tolerance_over_depth, elements_across; // NaN: not known
+  double depth;                                                             // D [m]
   double stiffness;                                                         // c or κ of the pair
   double stiffness_for; // that would bring give and rim to 1 %; NaN: none would, or the depth is no more
                         // than a step of a motion can tell
   double tolerance_for; // time.tolerance that would bring tolerance_over_depth there; NaN: static
+  bool is_brief;        // the largest P lasts one step of a motion
 } FemEstimate;
 FemEstimate fem_accuracy_estimate(const FemAccuracyPair *pair, const FemModel *model, double stiffness);
 

@@ -90,6 +90,8 @@ static const double NOTHING = FEM_DOUBT * FEM_DOUBT;
 // With fewer elements across a patch its pressure has the mesh's shape, whatever the stiffness
 // (docs/contact.md).
 static const double RESOLVED = 5;
+// From this share of pressure times area on, the resultant is told alone.
+static const double ONE_WAY = 0.9;
 
 static void record_estimate(const FemEstimate *estimate, Record *record) {
   record_number(record, "give", estimate->give);
@@ -110,7 +112,11 @@ static void record_contact(const FemLedger *ledger, int i, Record *record) {
   record_text(record, "a", fem_compliance_party_name(model, interface->a));
   record_text(record, "b", fem_compliance_party_name(model, interface->b));
   record_number(record, "force_max_N", pair->force);
-  record_number(record, "force_max_time", pair->time);
+  record_number(record, "force_max_time", pair->force_time);
+  record_number(record, "pressed_max_N", pair->pressed);
+  record_number(record, "pressed_max_time", pair->time);
+  record_number(record, "pressed_held_N", pair->held);
+  record_bool(record, "is_brief", estimate.is_brief);
   record_number(record, "area_m2", pair->area);
   record_numbers(record, "centre_m", pair->centre, 3);
   record_estimate(&estimate, record_child(record, "estimate"));
@@ -134,23 +140,40 @@ void fem_ledger_record(const FemLedger *ledger, Record *record) {
   if (contact_of(ledger)) {
     RecordList *contacts = record_list(record, "contacts");
     for (int i = 0; i < ledger->accuracy.count; i++)
-      if (ledger->accuracy.pairs[i].force > 0) record_contact(ledger, i, record_append(contacts));
+      if (ledger->accuracy.pairs[i].pressed > 0) record_contact(ledger, i, record_append(contacts));
   }
   if (probe_count(ledger) == 0) return;
   RecordList *probes = record_list(record, "probes");
   for (int p = 0; p < probe_count(ledger); p++) record_readings(ledger, p, record_append(probes));
 }
 
-// The interface of that rank by force; −1: none.
+// The interface of that rank by what it presses; −1: none.
 static int find_rank(const FemAccuracy *accuracy, int rank) {
   for (int i = 0; i < accuracy->count; i++) {
     int before = 0;
-    double force = accuracy->pairs[i].force;
+    double pressed = accuracy->pairs[i].pressed;
     for (int k = 0; k < accuracy->count; k++)
-      before += accuracy->pairs[k].force > force || (accuracy->pairs[k].force == force && k < i);
-    if (force > 0 && before == rank) return i;
+      before += accuracy->pairs[k].pressed > pressed || (accuracy->pairs[k].pressed == pressed && k < i);
+    if (pressed > 0 && before == rank) return i;
   }
   return -1;
+}
+
+// What presses: the resultant, and pressure times area where that is another number.
+static void describe_force(const FemAccuracyPair *pair, const FemEstimate *estimate, char *text, size_t size,
+                           size_t *used) {
+  if (pair->resultant > ONE_WAY * pair->pressed)
+    text_append(text, size, used, "largest force %.4g N, at t = %.4g s", pair->resultant, pair->time);
+  else
+    text_append(text, size, used,
+                "pressure times area %.4g N at most, at t = %.4g s\n"
+                "of which %.4g N are left as a resultant force: they press in many directions",
+                pair->pressed, pair->time, pair->resultant);
+  if (estimate->is_brief)
+    text_append(text, size, used,
+                "\nthat peak lasts one step, and two steps in a row hold %.4g N at most: a smaller "
+                "time.tolerance tells whether it is real",
+                pair->held);
 }
 
 bool fem_ledger_describe(const FemLedger *ledger, int rank, char *text, size_t size) {
@@ -161,13 +184,13 @@ bool fem_ledger_describe(const FemLedger *ledger, int rank, char *text, size_t s
   const ContactInterfaceDef *interface = &contact_system_layout(contact_of(ledger))->interfaces[i];
   FemEstimate estimate = fem_accuracy_estimate(pair, model, interface->stiffness);
   size_t used = 0;
+  text_append(text, size, &used, "'%s' and '%s'\n", fem_compliance_party_name(model, interface->a),
+              fem_compliance_party_name(model, interface->b));
+  describe_force(pair, &estimate, text, size, &used);
   text_append(text, size, &used,
-              "'%s' and '%s'\n"
-              "largest force %.4g N, at t = %.4g s\n"
-              "mean overlap %.2g m then\n"
+              "\nmean overlap %.2g m then\n"
               "%.3g %% of the total deformation is overlap",
-              fem_compliance_party_name(model, interface->a), fem_compliance_party_name(model, interface->b),
-              pair->force, pair->time, 2 * pair->energy / pair->estimated, 100 * estimate.give);
+              estimate.depth, 100 * estimate.give);
   if (estimate.tolerance_over_depth > 1)
     text_append(text, size, &used, "\nthe overlap is below the resolution of time.tolerance");
   if (estimate.rim > NOTHING)

@@ -40,8 +40,8 @@ void fem_ledger_accept(FemLedger *ledger);
 
 // Into summary.json: `contacts`, a row for each two that touched, and `probes`.
 void fem_ledger_record(const FemLedger *ledger, Record *record);
-// A message on the pair of that rank by force, 0 first: what presses, and how large the error may be. False:
-// there is no such pair.
+// A message on the pair of that rank by pressure times area, 0 first: what presses, and how large the error
+// may be. False: there is no such pair.
 bool fem_ledger_describe(const FemLedger *ledger, int rank, char *text, size_t size);
 
 // For a checkpoint: a new array, the caller's; and back. STATUS_INPUT: it does not fit.

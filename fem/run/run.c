@@ -134,8 +134,8 @@ static Status begin_statics(FemRunState *run) {
   TRY(fem_statics_create(&run->statics, &run->system, &run->trial,
                          fem_solver_ops(fem_run_choice(run->model, &run->system.numbering).kind)));
   TRY(begin_system(run, 0));
-  if (run->next_frame == 0) return begin_record(run);
   TRY(fem_statics_continue(&run->statics, run->time, run->u, from->force_scale, from->driven_work));
+  if (run->next_frame == 0) return begin_record(run);
   FemMeasures measures;
   TRY(fem_run_frames_measure(run, &measures));
   return fem_recorder_begin_step(&run->recorder, &run->trial, &measures);

@@ -80,7 +80,7 @@ typedef struct FemRunStatus {
 typedef struct FemRunAccount {
   Record *record; // contacts and probes as in summary.json, owned; NULL: the run has not begun
   // The pairs of bodies that pressed hardest, described with the error of contact
-  char contacts[FEM_RUN_DESCRIBED_COUNT][512]; //                               (contact_count)
+  char contacts[FEM_RUN_DESCRIBED_COUNT][1024]; //                               (contact_count)
   int contact_count;
 } FemRunAccount;
 

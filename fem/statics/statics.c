@@ -177,7 +177,8 @@ static Status say_why(FemStatics *statics, double time, const double *u) {
   return status_fail(STATUS_RETRY, "%s", text);
 }
 
-// Work of driven vertices, mean force times way, and of turning gravity up.
+// Work of driven vertices, mean force times way, and of turning gravity up; and of what holds the free ones
+// where a run begins out of equilibrium: it lets go along the first step of load.
 static void keep_work(FemStatics *statics, double time) {
   const FemSystem *system = statics->equilibrium.system;
   const FemModel *model = system->model;
@@ -194,6 +195,10 @@ static void keep_work(FemStatics *statics, double time) {
       statics->work_begin -= statics->kept_force[dof] * way;
       statics->work_end -= system->forces[dof] * way;
     }
+  for (int i = 0; i < system->numbering.count; i++) {
+    int dof = system->numbering.dof_of_unknown[i];
+    statics->work_begin -= statics->kept_force[dof] * (positions[dof] - statics->kept_position[dof]);
+  }
   statics->driven_work += 0.5 * (statics->work_begin + statics->work_end);
   statics->work_left = statics->residual * sqrt(system->numbering.count) * longest;
   statics->kept_time = time;
@@ -238,7 +243,7 @@ static Status find_equilibrium(FemStatics *statics, double time, double *u) {
 
 Status fem_statics_continue(FemStatics *statics, double time, const double *u, double force_scale,
                             double driven_work) {
-  statics->force_scale = force_scale;
+  statics->force_scale = fmax(statics->force_scale, force_scale);
   TRY(evaluate(statics, time, u));
   statics->residual = fem_equilibrium_largest(statics->force, statics->equilibrium.system->numbering.count);
   keep_work(statics, time);

@@ -23,7 +23,8 @@ typedef struct FemStatics {
   double *force, *step, *start; // scratch                     (unknown_count)
   double *kept_force, *kept_position; // at the last equilibrium     (vertex_count, 3)
   double kept_time;                   // of that
-  double driven_work;                 // of driven vertices, and of increasing gravity, so far [J]
+  double driven_work;                 // of driven vertices, of increasing gravity, and of what holds a body
+                                      // that begins out of equilibrium, so far [J]
   double work_begin, work_end;        // of the last step, by the forces at its begin and end [J]
   double work_left;                   // of the unbalanced forces, along the longest driven displacement [J]
   double residual;                    // largest force on an unknown at the end of the last step [N]
@@ -34,7 +35,8 @@ typedef struct FemStatics {
 // `system` is borrowed, and `state`, which each evaluation fills; after a step it is the equilibrium.
 // STATUS_INPUT: what only a motion can have (friction by velocities, release, an initial velocity).
 Status fem_statics_create(FemStatics *statics, FemSystem *system, FemState *state, const FemSolverOps *ops);
-// Goes on from an equilibrium u at `time`, with the largest force met and the work done until then.
+// Begins at u, or goes on from an equilibrium u at `time`, with the largest force met and the work done until
+// then.
 Status fem_statics_continue(FemStatics *statics, double time, const double *u, double force_scale,
                             double driven_work);
 void fem_statics_destroy(FemStatics *statics); // also of a zeroed one

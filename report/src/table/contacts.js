@@ -7,9 +7,11 @@ import { format, h, nameCell, scrolled, swatchOf } from "../dom.js";
 const percent = (share) => (share > 0 && share < 1e-5 ? "< 0.001\u2009%" : format(share == null ? NaN : 100 * share, "%", 2));
 
 const COLUMNS = [
-  ["Largest force", (row) => format(row.force_max_N, "N")],
-  ["Time", (row) => format(row.force_max_time, "s"), "of the largest force"],
-  ["Area", (row) => format(row.area_m2, "m²"), "in contact at that time"],
+  ["Pressure × area", (row) => format(row.pressed_max_N, "N"), "the largest sum of forces of all pairs of elements, whatever their directions"],
+  ["Time", (row) => format(row.pressed_max_time, "s"), "of that"],
+  ["Two steps hold", (row) => (row.is_brief ? format(row.pressed_held_N, "N") : "all"), "the largest pressure × area that two steps in a row have; far less: the peak lasts one step"],
+  ["Largest force", (row) => format(row.force_max_N, "N"), "the resultant between the two"],
+  ["Area", (row) => format(row.area_m2, "m²"), "in contact when pressure × area is largest"],
   ["Interface share", (row) => percent(row.estimate.give), "compliance of the interface over the total compliance: the error of the force, or of the displacement"],
   ["Rim loss", (row) => percent(row.estimate.rim), "share of the force that is missing at edges of bodies at this depth"],
   ["Elements across", (row) => format(row.estimate.elements_across, "", 2), "√area over the elements’ mean edge; below about five the pressure’s shape is the mesh’s"],
@@ -22,7 +24,7 @@ export function buildContacts(runs) {
   if (rows.length === 0) return null;
   const pairOf = ({ row }) => `${row.a} – ${row.b}`;
   const most = {}; // of two, over all runs
-  for (const one of rows) most[pairOf(one)] = Math.max(most[pairOf(one)] ?? 0, one.row.force_max_N);
+  for (const one of rows) most[pairOf(one)] = Math.max(most[pairOf(one)] ?? 0, one.row.pressed_max_N);
   rows.sort((a, b) => most[pairOf(b)] - most[pairOf(a)] || a.run.index - b.run.index);
   const names = runs.length > 1;
   const header = h(
@@ -43,6 +45,6 @@ export function buildContacts(runs) {
     { id: "contacts" },
     h("h2", "How wrong the contact may be"),
     scrolled("Contact forces and their estimated errors", h("thead", header), h("tbody", rows.map(line))),
-    h("p.note", "Estimated at the largest force. Formulas: docs/contact.md."),
+    h("p.note", "Estimated where pressure × area is largest. Formulas: docs/contact.md."),
   );
 }

@@ -3,7 +3,10 @@
 // hundred and more times as large.
 #include "scene.h"
 
+#include <math.h>
 #include <string.h>
+
+#include "fem/measure/accuracy.h"
 
 typedef struct Told {
   double force, give, rim, stiffness_for, by_tolerance, tolerance_for, elements;
@@ -143,8 +146,51 @@ START_TEST(the_tolerance_bounds_the_error_of_a_peak_force) {
 }
 END_TEST
 
+// A quarter of a shaft in a quarter of a hole: of an even pressure p the resultant is √2 p R b, pressure
+// times area π/2 p R b. Round the whole shaft the first would be nothing.
+START_TEST(pressure_times_area_is_told_beside_the_resultant) {
+  SceneRun run;
+  scene_run(&run, "shaft", NULL);
+  const Record *contact = record_at(record_find(run.result.account.record, "contacts"), 0);
+  double area_pressure = record_find_number(contact, "pressed_max_N"),
+         theory = 0.01 * 1e6 / 0.91 * 3 / 8 * 0.15 * M_PI / 2;
+  ck_assert_near(area_pressure, theory, 0.05 * theory);
+  ck_assert_near(area_pressure / record_find_number(contact, "force_max_N"), M_PI / 2 / sqrt(2), 0.03);
+  ck_assert_double_eq(record_find_number(contact, "pressed_max_time"), 1);
+  scene_close(&run);
+}
+END_TEST
+
+static void accept(FemAccuracy *accuracy, double time, double value) {
+  FemAccuracyPair *pair = &accuracy->pairs[0];
+  accuracy->time = time;
+  accuracy->pressed[0] = accuracy->forces[0] = value;
+  if (value > pair->pressed) pair->pressed = pair->estimated = value, pair->time = time;
+  fem_accuracy_accept(accuracy);
+}
+
+// 4.1 times the plateau in one step; where a part of a run begins anew, its first state does not count twice.
+START_TEST(a_peak_that_lasts_one_step_is_told_as_such) {
+  SceneRun run;
+  scene_open(&run, "drop", NULL);
+  FemAccuracyPair pair = {.seen = -INFINITY, .edge = 1, .energy = 1};
+  double area_pressure, force;
+  FemAccuracy accuracy = {.count = 1, .pairs = &pair, .pressed = &area_pressure, .forces = &force};
+  const double values[] = {0, 9, 10, 41, 41, 10}, times[] = {0, 1, 2, 3, 3, 4};
+  for (int k = 0; k < 6; k++) accept(&accuracy, times[k], values[k]);
+  ck_assert_double_eq(pair.held, 10);
+  ck_assert(fem_accuracy_estimate(&pair, &run.model, 1).is_brief);
+  accept(&accuracy, 5, 40), accept(&accuracy, 6, 39);
+  ck_assert_double_eq(pair.held, 39);
+  ck_assert(!fem_accuracy_estimate(&pair, &run.model, 1).is_brief);
+  scene_close(&run);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("accuracy");
+  tcase_add_test(cases, pressure_times_area_is_told_beside_the_resultant);
+  tcase_add_test(cases, a_peak_that_lasts_one_step_is_told_as_such);
   tcase_add_test(cases, the_give_of_two_blocks_in_a_press);
   tcase_add_test(cases, the_give_under_a_ball);
   tcase_add_test(cases, what_a_rim_loses_at_a_given_depth);
