@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 static int least(int a, int b) {
   return a < b ? a : b;
@@ -43,10 +44,12 @@ TextGuess text_guess_of(const char *word) {
 }
 
 void text_guess_offer(TextGuess *guess, const char *candidate) {
+  size_t length = strlen(guess->word);
   int distance = text_distance(guess->word, candidate);
-  if (distance >= guess->distance) return;
-  guess->best = candidate;
-  guess->distance = distance;
+  bool is_near = distance < guess->distance;
+  bool is_begun = length >= 3 && strncasecmp(guess->word, candidate, length) == 0;
+  if (is_near || (is_begun && !guess->best)) guess->best = candidate;
+  if (is_near) guess->distance = distance;
 }
 
 const char *text_next(const char *list, char word[TEXT_MAX_WORD]) {

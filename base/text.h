@@ -17,8 +17,9 @@ int text_distance(const char *a, const char *b);
 // The best guess so far while candidates are offered one by one; starts as text_guess_of(word).
 typedef struct TextGuess {
   const char *word; // borrowed
-  const char *best; // the nearest candidate, borrowed; NULL: none is near enough to be what was meant
-  int distance;     // of `best`; without one: the largest distance that counts as near, plus 1
+  const char *best; // the nearest candidate, borrowed; if none is near, one that begins with `word`, of three
+                    // letters or more; NULL: nor does any
+  int distance;     // of the nearest; without one: the largest distance that counts as near, plus 1
 } TextGuess;
 
 TextGuess text_guess_of(const char *word);

@@ -30,6 +30,21 @@ START_TEST(a_guess_is_near_or_none) {
 }
 END_TEST
 
+static const char *guess_among(const char *word, const char *first, const char *second) {
+  TextGuess guess = text_guess_of(word);
+  text_guess_offer(&guess, first), text_guess_offer(&guess, second);
+  return guess.best ? guess.best : "";
+}
+
+START_TEST(the_beginning_of_a_name_is_a_guess_if_no_name_is_near) {
+  ck_assert_str_eq(guess_among("fix", "driven", "fixed"), "fixed");
+  ck_assert_str_eq(guess_among("Max", "max_step", "max_frames"), "max_step");
+  ck_assert_str_eq(guess_among("mix", "mixture", "min"), "min");
+  ck_assert_str_eq(guess_among("fi", "driven", "fixed"), "");
+  ck_assert_str_eq(guess_among("fixedly", "driven", "fix"), "");
+}
+END_TEST
+
 START_TEST(utf8_is_told_from_what_is_not) {
   static const char *const good[] = {"a", "\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x98\x80", "\xef\xbf\xbf"};
   static const char *const bad[] = {
@@ -69,6 +84,7 @@ int main(void) {
   TCase *cases = tcase_create("text");
   tcase_add_test(cases, distances_count_slips_of_the_finger);
   tcase_add_test(cases, a_guess_is_near_or_none);
+  tcase_add_test(cases, the_beginning_of_a_name_is_a_guess_if_no_name_is_near);
   tcase_add_test(cases, utf8_is_told_from_what_is_not);
   tcase_add_test(cases, a_list_is_cut_at_commas_and_blanks_around_words_are_left_out);
   tcase_add_test(cases, a_list_with_an_empty_word_or_too_many_is_none);
