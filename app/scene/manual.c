@@ -176,9 +176,9 @@ static const char *note_section(Manual *manual, const SceneSection *section, con
 static void print_choices(FILE *stream, const SceneKey *key) {
   fprintf(stream, "\n`%s` is one of\n\n| name | what |\n|---|---|\n", key->name);
   const char *name;
-  for (int i = 0; (name = key->choices->name(i)); i++) {
+  for (int i = 0; (name = app_scene_section_name(key->choices, i)); i++) {
     fprintf(stream, "| `%s` | ", name);
-    print_cell(stream, key->choices->help(i));
+    print_cell(stream, app_scene_section_help(key->choices, i));
     fputs(" |\n", stream);
   }
   if (key->choices->accepts) fprintf(stream, "\nor %s.\n", key->choices->accepts_help);

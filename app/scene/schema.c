@@ -19,8 +19,9 @@ static void describe(const SceneKey *key, Record *record) {
   text_append(text, sizeof text, &used, "%s", key->help);
   if (key->unit) text_append(text, sizeof text, &used, " [%s]", key->unit);
   const char *name;
-  for (int i = 0; key->choices && (name = key->choices->name(i)); i++)
-    text_append(text, sizeof text, &used, "%s%s: %s", i ? "; " : ". ", name, key->choices->help(i));
+  for (int i = 0; key->choices && (name = app_scene_section_name(key->choices, i)); i++)
+    text_append(text, sizeof text, &used, "%s%s: %s", i ? "; " : ". ", name,
+                app_scene_section_help(key->choices, i));
   if (key->absent_help) text_append(text, sizeof text, &used, ". Without it: %s", key->absent_help);
   record_text(record, "description", text);
 }
@@ -64,7 +65,7 @@ static void put_broadcast(const SceneKey *key, const char *type, bool is_nullabl
 
 static void put_names(RecordList *list, const SceneChoices *choices) {
   const char *name;
-  for (int i = 0; (name = choices->name(i)); i++) record_append_text(list, name);
+  for (int i = 0; (name = app_scene_section_name(choices, i)); i++) record_append_text(list, name);
 }
 
 static void put_choices(const SceneChoices *choices, Record *record) {

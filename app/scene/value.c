@@ -81,7 +81,7 @@ static Status find_choice(const SceneKey *key, const SceneNode *node, int *choic
   if (*choice >= 0) return STATUS_OK;
   TextGuess guess = text_guess_of(node->text);
   const char *name;
-  for (int i = 0; (name = key->choices->name(i)); i++) text_guess_offer(&guess, name);
+  for (int i = 0; (name = app_scene_section_name(key->choices, i)); i++) text_guess_offer(&guess, name);
   char hint[MESSAGE_SIZE] = "", path[MESSAGE_SIZE];
   app_scene_tree_path(node, path, sizeof path);
   const char *advice = app_scene_keys_removed_value(path, node->text);

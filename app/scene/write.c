@@ -158,7 +158,7 @@ Status app_scene_write_value(const SceneKey *key, const void *self, Record *reco
     record_text(record, name, text_of(key, self));
     break;
   case SCENE_CHOICE:
-    record_text(record, name, key->choices->name(choice_at(field, key->size)));
+    record_text(record, name, app_scene_section_name(key->choices, choice_at(field, key->size)));
     break;
   case SCENE_VECTOR:
   case SCENE_DIRECTION:

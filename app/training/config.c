@@ -11,75 +11,36 @@
 
 #define AT(Type, field) offsetof(Type, field), sizeof(((Type *)0)->field)
 
-static const char *const kinds[] = {"geo", "tpn", "bound", NULL};
-static const char *const kind_helps[] = {"analytic-centre frame, symmetric features, a small dense network",
-                                         "TetrahedronPairNet as published (reading c) or after it",
-                                         "a bound of the error of a geo's V, which `hybrid` goes by"};
-static const char *const readings[] = {"a", "b", "c", "backbone", NULL};
-static const char *const reading_helps[] = {"coordinates concatenated, biased skips; 73,370 parameters",
-                                            "a vertex skip for each index; 73,370 parameters",
-                                            "as published: one tetrahedron, blocks that end linearly; 73,370",
-                                            "reading a with a layer of 1024; 410,266 parameters"};
-static const char *const activations[] = {"relu", "silu", NULL};
-static const char *const activation_helps[] = {"as published; its gradient is piecewise constant", "smooth"};
-static const char *const pools[] = {"max", "sum", NULL};
-static const char *const pool_helps[] = {"as published; the gradient jumps where another vertex takes over",
-                                         "smooth"};
-static const char *const normalisations[] = {"unit", "pca", "sorted", "unscaled", "axis", NULL};
-static const char *const normalisation_helps[] = {"the first tetrahedron becomes the unit simplex",
-                                                  "the first tetrahedron's principal axes become the axes",
-                                                  "unit, vertices in an order of their own",
-                                                  "unit, but the network's output is V of the pair as it was",
-                                                  "sorted, the two tetrahedra in an order of their own too"};
-static const char *const schedules[] = {"cosine", "plateau", NULL};
-static const char *const schedule_helps[] = {"half a cosine from rate to final_rate",
-                                             "a cut where the validation's score stops falling"};
+static const SceneChoices kind_choices = {
+    .listed =
+        (const SceneChoice[]){{"geo", "analytic-centre frame, symmetric features, a small dense network"},
+                              {"tpn", "TetrahedronPairNet as published (reading c) or after it"},
+                              {"bound", "a bound of the error of a geo's V, which `hybrid` goes by"},
+                              {0}}};
+static const SceneChoices reading_choices = {
+    .listed = (const SceneChoice[]){{"a", "coordinates concatenated, biased skips; 73,370 parameters"},
+                                    {"b", "a vertex skip for each index; 73,370 parameters"},
+                                    {"c", "as published: one tetrahedron, blocks that end linearly; 73,370"},
+                                    {"backbone", "reading a with a layer of 1024; 410,266 parameters"},
+                                    {0}}};
+static const SceneChoices activation_choices = {
+    .listed = (const SceneChoice[]){
+        {"relu", "as published; its gradient is piecewise constant"}, {"silu", "smooth"}, {0}}};
+static const SceneChoices pool_choices = {
+    .listed = (const SceneChoice[]){
+        {"max", "as published; the gradient jumps where another vertex takes over"}, {"sum", "smooth"}, {0}}};
+static const SceneChoices normalisation_choices = {
+    .listed = (const SceneChoice[]){{"unit", "the first tetrahedron becomes the unit simplex"},
+                                    {"pca", "the first tetrahedron's principal axes become the axes"},
+                                    {"sorted", "unit, vertices in an order of their own"},
+                                    {"unscaled", "unit, but the network's output is V of the pair as it was"},
+                                    {"axis", "sorted, the two tetrahedra in an order of their own too"},
+                                    {0}}};
 
-static const char *kind_name(int i) {
-  return kinds[i];
-}
-static const char *kind_help(int i) {
-  return kind_helps[i];
-}
-static const char *reading_name(int i) {
-  return readings[i];
-}
-static const char *reading_help(int i) {
-  return reading_helps[i];
-}
-static const char *activation_name(int i) {
-  return activations[i];
-}
-static const char *activation_help(int i) {
-  return activation_helps[i];
-}
-static const char *pool_name(int i) {
-  return pools[i];
-}
-static const char *pool_help(int i) {
-  return pool_helps[i];
-}
-static const char *normalisation_name(int i) {
-  return normalisations[i];
-}
-static const char *normalisation_help(int i) {
-  return normalisation_helps[i];
-}
-
-static const char *schedule_name(int i) {
-  return schedules[i];
-}
-static const char *schedule_help(int i) {
-  return schedule_helps[i];
-}
-
-static const SceneChoices kind_choices = {.name = kind_name, .help = kind_help};
-static const SceneChoices reading_choices = {.name = reading_name, .help = reading_help};
-static const SceneChoices activation_choices = {.name = activation_name, .help = activation_help};
-static const SceneChoices pool_choices = {.name = pool_name, .help = pool_help};
-static const SceneChoices normalisation_choices = {.name = normalisation_name, .help = normalisation_help};
-
-static const SceneChoices schedule_choices = {.name = schedule_name, .help = schedule_help};
+static const SceneChoices schedule_choices = {
+    .listed = (const SceneChoice[]){{"cosine", "half a cosine from rate to final_rate"},
+                                    {"plateau", "a cut where the validation's score stops falling"},
+                                    {0}}};
 
 static const char *finish_model(void *self, const char **key) {
   const AppTrainingModelDef *model = self;
@@ -306,7 +267,7 @@ static void print_sources(const char *key, const AppTrainingSourceDef *sources, 
 }
 
 static void print_model(const AppTrainingModelDef *def, char *text, size_t size, size_t *used) {
-  text_append(text, size, used, "model: %s", kinds[def->kind]);
+  text_append(text, size, used, "model: %s", app_scene_section_name(&kind_choices, (int)def->kind));
   if (def->kind == APP_MODEL_GEO)
     text_append(text, size, used, ", %d features, %d x %d%s\n", def->features, def->width, def->depth,
                 def->has_centroid ? ", centroid" : "");
@@ -314,9 +275,11 @@ static void print_model(const AppTrainingModelDef *def, char *text, size_t size,
     text_append(text, size, used, ", of %s, %d features, %d x %d\n", def->of, def->features, def->width,
                 def->depth);
   else
-    text_append(text, size, used, ", reading %s, %s%s, %s, output_scale %.15g\n", readings[def->reading],
-                activations[def->activation], def->pool == APP_POOL_SUM ? ", sum pools" : "",
-                normalisations[def->normalisation], def->output_scale);
+    text_append(text, size, used, ", reading %s, %s%s, %s, output_scale %.15g\n",
+                app_scene_section_name(&reading_choices, (int)def->reading),
+                app_scene_section_name(&activation_choices, (int)def->activation),
+                def->pool == APP_POOL_SUM ? ", sum pools" : "",
+                app_scene_section_name(&normalisation_choices, (int)def->normalisation), def->output_scale);
   if (def->kind == APP_MODEL_TPN && (def->scale != 1 || def->layers != 2))
     text_append(text, size, used, "size: widths times %.15g, %d layers a block\n", def->scale, def->layers);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/command/about/effects.h"
+#include "app/command/commands.h"
 
 #include <stdio.h>
 
@@ -19,7 +19,8 @@ static void print_choices(const SceneSection *section, const char *above) {
     if (!key->choices) continue;
     printf("\n%s:\n", path);
     const char *name;
-    for (int c = 0; (name = key->choices->name(c)); c++) printf("  %-14s %s\n", name, key->choices->help(c));
+    for (int c = 0; (name = app_scene_section_name(key->choices, c)); c++)
+      printf("  %-14s %s\n", name, app_scene_section_help(key->choices, c));
   }
 }
 

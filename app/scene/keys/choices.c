@@ -58,109 +58,66 @@ const SceneChoices app_scene_choices_overlaps = {
 
 // Names of numbers and switches in a scene's definition.
 
-static const char *hessian_name(int i) { // the number is FemContactDef.use_full_hessian
-  static const char *const names[] = {"gauss_newton", "full"};
-  return i < 2 ? names[i] : NULL;
-}
-static const char *hessian_help(int i) {
-  return i == 0 ? "products of the first derivatives only: cheaper, more iterations"
-                : "the second derivatives of the overlap volumes as well, where the model has them";
-}
-const SceneChoices app_scene_choices_hessians = {.name = hessian_name, .help = hessian_help};
+// The number is FemContactDef.use_full_hessian.
+const SceneChoices app_scene_choices_hessians = {
+    .listed = (const SceneChoice[]){
+        {"gauss_newton", "products of the first derivatives only: cheaper, more iterations"},
+        {"full", "the second derivatives of the overlap volumes as well, where the model has them"},
+        {0}}};
 
-static const char *element_name(int i) {
-  static const char *const names[] = {"linear", "nodal", "quadratic"};
-  return i < 3 ? names[i] : NULL;
-}
-static const char *element_help(int i) {
-  static const char *const helps[] = {
-      "constant strain; too stiff in bending, and above about ν = 0.45 altogether",
-      "linear, the volume change averaged at the vertices: for ν up to 0.499",
-      "ten nodes, linear strain: bending with few elements, for ν up to 0.499; keeps the curved edges of "
-      "second-order files"};
-  return helps[i];
-}
-const SceneChoices app_scene_choices_elements = {.name = element_name, .help = element_help};
+const SceneChoices app_scene_choices_elements = {
+    .listed = (const SceneChoice[]){
+        {"linear", "constant strain; too stiff in bending, and above about ν = 0.45 altogether"},
+        {"nodal", "linear, the volume change averaged at the vertices: for ν up to 0.499"},
+        {"quadratic", "ten nodes, linear strain: bending with few elements, for ν up to 0.499; keeps the "
+                      "curved edges of second-order files"},
+        {0}}};
 
-static const char *following_name(int i) { // the number is FemLoadDef.is_dead
-  static const char *const names[] = {"surface", "nothing"};
-  return i < 2 ? names[i] : NULL;
-}
-static const char *following_help(int i) {
-  return i == 0 ? "the surface as it is now: direction and area change with it"
-                : "the surface as it was at rest: a dead load";
-}
-const SceneChoices app_scene_choices_followings = {.name = following_name, .help = following_help};
+// The number is FemLoadDef.is_dead.
+const SceneChoices app_scene_choices_followings = {
+    .listed =
+        (const SceneChoice[]){{"surface", "the surface as it is now: direction and area change with it"},
+                              {"nothing", "the surface as it was at rest: a dead load"},
+                              {0}}};
 
 // The numbers are those of overlap/options.h.
 
-static const char *ghosts_name(int i) {
-  static const char *const names[] = {"auto", "keep", "cut", "fade"};
-  return i < 4 ? names[i] : NULL;
-}
-static const char *ghosts_help(int i) {
-  static const char *const helps[] = {"as the model has it: tpn keep, tpn-scene fade",
-                                      "disjoint pairs have the volume that the network predicts",
-                                      "an exact test sets it to 0, and V jumps at first contact",
-                                      "an exact test sets it to 0, and V is faded in over the first overlap"};
-  return helps[i];
-}
-const SceneChoices app_scene_choices_ghosts = {.name = ghosts_name, .help = ghosts_help};
+const SceneChoices app_scene_choices_ghosts = {
+    .listed = (const SceneChoice[]){
+        {"auto", "as the model has it: tpn keep, tpn-scene fade"},
+        {"keep", "disjoint pairs have the volume that the network predicts"},
+        {"cut", "an exact test sets it to 0, and V jumps at first contact"},
+        {"fade", "an exact test sets it to 0, and V is faded in over the first overlap"},
+        {0}}};
 
-static const char *gate_name(int i) {
-  static const char *const names[] = {"auto", "none", "status"};
-  return i < 3 ? names[i] : NULL;
-}
-static const char *gate_help(int i) {
-  static const char *const helps[] = {"as the model has it: tpn-scene status, others none",
-                                      "V is the output of the volume head",
-                                      "V is multiplied by the probability from the status head"};
-  return helps[i];
-}
-const SceneChoices app_scene_choices_gates = {.name = gate_name, .help = gate_help};
+const SceneChoices app_scene_choices_gates = {
+    .listed = (const SceneChoice[]){{"auto", "as the model has it: tpn-scene status, others none"},
+                                    {"none", "V is the output of the volume head"},
+                                    {"status", "V is multiplied by the probability from the status head"},
+                                    {0}}};
 
-static const char *orders_name(int i) {
-  static const char *const names[] = {"auto", "one", "both"};
-  return i < 3 ? names[i] : NULL;
-}
-static const char *orders_help(int i) {
-  static const char *const helps[] = {"as the model has it: tpn one, others both",
-                                      "V(A, B) and V(B, A) differ",
-                                      "the mean of V(A, B) and V(B, A), at twice the cost"};
-  return helps[i];
-}
-const SceneChoices app_scene_choices_orders = {.name = orders_name, .help = orders_help};
+const SceneChoices app_scene_choices_orders = {
+    .listed = (const SceneChoice[]){{"auto", "as the model has it: tpn one, others both"},
+                                    {"one", "V(A, B) and V(B, A) differ"},
+                                    {"both", "the mean of V(A, B) and V(B, A), at twice the cost"},
+                                    {0}}};
 
-static const char *beyond_name(int i) {
-  static const char *const names[] = {"auto", "count", "exact"};
-  return i < 3 ? names[i] : NULL;
-}
-static const char *beyond_help(int i) {
-  static const char *const helps[] = {"as the model has it: hybrid exact, others count",
-                                      "they are counted in summary.json",
-                                      "they are evaluated by the exact model, blended over a band"};
-  return helps[i];
-}
-const SceneChoices app_scene_choices_beyond = {.name = beyond_name, .help = beyond_help};
+const SceneChoices app_scene_choices_beyond = {
+    .listed = (const SceneChoice[]){{"auto", "as the model has it: hybrid exact, others count"},
+                                    {"count", "they are counted in summary.json"},
+                                    {"exact", "they are evaluated by the exact model, blended over a band"},
+                                    {0}}};
 
-static const char *coplanar_name(int i) {
-  static const char *const names[] = {"auto", "keep", "clip"};
-  return i < 3 ? names[i] : NULL;
-}
-static const char *coplanar_help(int i) {
-  static const char *const helps[] = {
-      "as the model has it: hybrid clip, others keep", "the network evaluates them like any other",
-      "they are blended with clipping, the more the closer the faces are to coplanar"};
-  return helps[i];
-}
-const SceneChoices app_scene_choices_coplanar = {.name = coplanar_name, .help = coplanar_help};
+const SceneChoices app_scene_choices_coplanar = {
+    .listed = (const SceneChoice[]){
+        {"auto", "as the model has it: hybrid clip, others keep"},
+        {"keep", "the network evaluates them like any other"},
+        {"clip", "they are blended with clipping, the more the closer the faces are to coplanar"},
+        {0}}};
 
-static const char *history_name(int i) { // the number is FemSceneDef.history
-  static const char *const names[] = {"none", "frames", "steps"};
-  return i < 3 ? names[i] : NULL;
-}
-static const char *history_help(int i) {
-  static const char *const helps[] = {"no history", "a row per frame", "a row per accepted step"};
-  return helps[i];
-}
-const SceneChoices app_scene_choices_histories = {history_name, history_help, .takes_switch = true};
+// The number is FemSceneDef.history.
+const SceneChoices app_scene_choices_histories = {
+    .listed =
+        (const SceneChoice[]){
+            {"none", "no history"}, {"frames", "a row per frame"}, {"steps", "a row per accepted step"}, {0}},
+    .takes_switch = true};

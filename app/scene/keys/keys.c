@@ -95,7 +95,7 @@ bool app_scene_keys_allows(const SceneKey *key, double number) {
 
 int app_scene_keys_choice(const SceneKey *key, const char *name) {
   const char *known;
-  for (int i = 0; (known = key->choices->name(i)); i++)
+  for (int i = 0; (known = app_scene_section_name(key->choices, i)); i++)
     if (strcmp(known, name) == 0) return i;
   return -1;
 }
@@ -147,7 +147,7 @@ void app_scene_keys_expect(const SceneKey *key, char *text, size_t size) {
   size_t used = 0;
   text_append(text, size, &used, "%s", type_text(key->type));
   const char *name;
-  for (int i = 0; key->choices && (name = key->choices->name(i)); i++)
+  for (int i = 0; key->choices && (name = app_scene_section_name(key->choices, i)); i++)
     text_append(text, size, &used, "%s%s", i ? ", " : "", name);
   if (key->choices && key->choices->accepts)
     text_append(text, size, &used, ", or %s", key->choices->accepts_help);

@@ -29,8 +29,14 @@ typedef enum SceneType {
   SCENE_LIST,      // an array of structs, owned, (count); each a section
 } SceneType;
 
-// A closed set of names; NULL beyond the last.
+typedef struct SceneChoice {
+  const char *name, *help;
+} SceneChoice;
+
+// A closed set of names: a list, ended by a zeroed one, or functions where another layer owns them, with NULL
+// beyond the last.
 typedef struct SceneChoices {
+  const SceneChoice *listed; // NULL: by `name` and `help`
   const char *(*name)(int index);
   const char *(*help)(int index);
   bool takes_switch; // true stands for the second name, false for the first
@@ -38,6 +44,13 @@ typedef struct SceneChoices {
   bool (*accepts)(const char *word);
   const char *accepts_help; // what they are, after "or"
 } SceneChoices;
+
+static inline const char *app_scene_section_name(const SceneChoices *choices, int index) {
+  return choices->listed ? choices->listed[index].name : choices->name(index);
+}
+static inline const char *app_scene_section_help(const SceneChoices *choices, int index) {
+  return choices->listed ? choices->listed[index].help : choices->help(index);
+}
 
 // What giving a key sets besides its own value: a flag, or which way was chosen.
 typedef struct SceneMark {
