@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lab/program.h"
 
-#include "app/command/about/help.h"
-#include "app/command/about/version.h"
+#include "app/command/commands.h"
 #include "lab/device.h"
 #include "lab/elements.h"
 #include "lab/net.h"

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/bench/bench.h"
 
-#include "app/bench/overlap/overlap.h"
-#include "app/bench/unseen/unseen.h"
-
 static const AppCommand *const benches[] = {&app_bench_overlap, &app_bench_unseen, NULL};
 
 const AppCommand app_bench_bench = {

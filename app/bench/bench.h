@@ -7,4 +7,8 @@
 
 extern const AppCommand app_bench_bench;
 
+// app/bench/overlap: how many pairs of tetrahedra a second the models answer; app/bench/unseen: how right
+// they are on bodies that no training has seen.
+extern const AppCommand app_bench_overlap, app_bench_unseen;
+
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/bench/overlap/overlap.h"
+#include "app/bench/bench.h"
 
 #include <limits.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/bench/unseen/unseen.h"
+#include "app/bench/bench.h"
 
 #include <math.h>
 #include <omp.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/command/about/completion.h"
+#include "app/command/commands.h"
 
 #include "app/cli/completion.h"
 #include "app/cli/parse.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/command/about/devices.h"
+#include "app/command/commands.h"
 
 #include <stdio.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/command/about/help.h"
+#include "app/command/commands.h"
 
 #include "app/cli/manual.h"
 #include "app/cli/parse.h"

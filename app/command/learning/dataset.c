@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/command/learning/dataset.h"
 
-#include "app/command/learning/dataset_export.h"
-#include "app/command/learning/dataset_import.h"
-#include "app/command/learning/dataset_info.h"
-#include "app/command/learning/dataset_merge.h"
-#include "app/command/learning/dataset_plot.h"
+#include "app/command/commands.h"
 
 static const AppCommand *const verbs[] = {&app_command_dataset_export, &app_command_dataset_import,
                                           &app_command_dataset_info,   &app_command_dataset_merge,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/command/output/report.h"
+#include "app/command/commands.h"
 
 #include <stdlib.h>
 #include <string.h>

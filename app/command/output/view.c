@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/command/output/view.h"
+#include "app/command/commands.h"
 
 #include <errno.h>
 #include <signal.h>

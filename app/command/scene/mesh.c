@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/command/scene/mesh.h"
+#include "app/command/commands.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -6,6 +6,7 @@
 #include "app/cli/parse.h"
 #include "app/cli/ranks.h"
 #include "app/cli/versions.h"
+#include "app/command/commands.h"
 #include "app/job/beacon.h"
 #include "app/job/closing.h"
 #include "app/job/folder.h"

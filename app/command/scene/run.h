@@ -19,6 +19,4 @@ typedef struct AppRunOptions {
 // Opens the scene, runs it, writes summary and manifest; tells the log what went wrong.
 Status app_run_execute(const AppRunOptions *options);
 
-extern const AppCommand app_command_run;
-
 #endif

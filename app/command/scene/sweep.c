@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/command/scene/sweep.h"
+#include "app/command/commands.h"
 
 #include <stdio.h>
 #include <string.h>

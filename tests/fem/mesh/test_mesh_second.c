@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/command/scene/mesh.h"
+#include "app/command/commands.h"
 #include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"

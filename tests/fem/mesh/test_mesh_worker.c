@@ -10,7 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "app/command/scene/mesh.h"
+#include "app/command/commands.h"
 #include "base/files/file.h"
 #include "base/memory.h"
 #include "fem/mesh/reader/gmsh_library.h"
