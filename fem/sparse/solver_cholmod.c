@@ -1,29 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Condensed system by CHOLMOD's supernodal Cholesky factorisation. Unknowns of one vertex have the same
-// neighbours, so the ordering is found on the graph of vertices (a third of the nodes, a ninth of the edges)
-// and carried over.
+// Condensed system by a supernodal Cholesky factorisation: CHOLMOD orders and analyses, the numbers are those of
+// front/factor.h. Unknowns of one vertex have the same neighbours, so all of the analysis is done on the graph
+// of vertices (a third of the nodes, a ninth of the edges).
 //
-// Threads: one. OpenBLAS divides its work by their number, and the last bits of a factor with it: a cube of
-// 50,000 vertices had other bits on 1, 2 and 4 threads. CHOLMOD's own loops, in teams of four whatever OpenMP
-// is set to, cost more than they give between calls of it: two to three times at 5,000 vertices, a hundred
-// times on a machine with other work. A host `teams` region with a thread limit holds them.
+// CHOLMOD's own numbers would not be the same on any number of threads: OpenBLAS divides its work by their number,
+// and the last bits of a factor with it. On one thread it would have one core.
 #include "fem/sparse/solver.h"
 
-#include <omp.h>
-#include <stdint.h>
 #include <suitesparse/cholmod.h>
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "fem/sparse/front/factor.h"
 
 // Smaller graphs are ordered by minimum degree: nested dissection gains nothing there.
 enum { SMALL_GRAPH = 300 };
+
 typedef struct CholmodSolver {
   cholmod_common common;
-  cholmod_factor *factor;   // of the analysed layout; NULL before
-  cholmod_dense *x, *y, *e; // kept between solves
-  int size;
-  long long layout;
+  FemFrontTree tree;
+  FemFrontFactor factor;
+  long long layout; // that was analysed; 0: none
   bool is_factorised;
   FemSolverStats stats;
 } CholmodSolver;
@@ -57,11 +54,9 @@ static Status create(void **self, int threads, double tolerance) {
 }
 
 static void forget_factor(CholmodSolver *solver) {
-  cholmod_common *common = &solver->common;
-  cholmod_free_factor(&solver->factor, common);
-  cholmod_free_dense(&solver->x, common);
-  cholmod_free_dense(&solver->y, common);
-  cholmod_free_dense(&solver->e, common);
+  fem_front_factor_destroy(&solver->factor);
+  fem_front_tree_destroy(&solver->tree);
+  solver->layout = 0;
   solver->is_factorised = false;
 }
 
@@ -73,22 +68,6 @@ static void destroy(void *self) {
   memory_free(solver);
 }
 
-// Our arrays as CHOLMOD sees them; nothing is copied.
-static cholmod_sparse view(const FemMatrix *matrix) {
-  return (cholmod_sparse){.nrow = (size_t)matrix->size,
-                          .ncol = (size_t)matrix->size,
-                          .nzmax = (size_t)matrix->entry_count,
-                          .p = matrix->col_begin,
-                          .i = matrix->row,
-                          .x = matrix->value,
-                          .stype = -1,
-                          .itype = CHOLMOD_INT,
-                          .xtype = CHOLMOD_REAL,
-                          .dtype = CHOLMOD_DOUBLE,
-                          .sorted = 1,
-                          .packed = 1};
-}
-
 // The graph of vertices that have unknowns, numbered anew: lower triangle with diagonal.
 typedef struct VertexGraph {
   int node_count;
@@ -96,12 +75,11 @@ typedef struct VertexGraph {
   int *row;         //                                (begin[node_count])
   int *first;       // first unknown of each node     (node_count + 1)
   int *order;       // node at each place             (node_count)
-  int *permutation; // unknown at each place          (unknowns)
 } VertexGraph;
 
 static void free_graph(VertexGraph *graph) {
   memory_free(graph->begin), memory_free(graph->row), memory_free(graph->first);
-  memory_free(graph->order), memory_free(graph->permutation);
+  memory_free(graph->order);
   *graph = (VertexGraph){0};
 }
 
@@ -141,8 +119,7 @@ static Status build_graph(const FemMatrix *matrix, VertexGraph *graph, int *node
   graph->first = memory_zeroed(size + 1, sizeof *graph->first);
   graph->begin = memory_zeroed(size + 1, sizeof *graph->begin);
   graph->order = memory_zeroed(size, sizeof *graph->order);
-  graph->permutation = memory_zeroed(size, sizeof *graph->permutation);
-  if (!graph->first || !graph->begin || !graph->order || !graph->permutation)
+  if (!graph->first || !graph->begin || !graph->order)
     return status_no_memory("the graph of the matrix");
   number_nodes(matrix, graph, node_of_unknown);
   int edge_count = list_edges(matrix, graph, node_of_unknown, NULL, NULL);
@@ -152,28 +129,28 @@ static Status build_graph(const FemMatrix *matrix, VertexGraph *graph, int *node
   return STATUS_OK;
 }
 
-static Status order_graph(CholmodSolver *solver, VertexGraph *graph) {
+// Our arrays as CHOLMOD sees them; nothing is copied.
+static cholmod_sparse view(const VertexGraph *graph) {
   size_t count = (size_t)graph->node_count;
-  cholmod_sparse pattern = {.nrow = count,
-                            .ncol = count,
-                            .nzmax = (size_t)graph->begin[count],
-                            .p = graph->begin,
-                            .i = graph->row,
-                            .stype = -1,
-                            .itype = CHOLMOD_INT,
-                            .xtype = CHOLMOD_PATTERN,
-                            .dtype = CHOLMOD_DOUBLE,
-                            .sorted = 1,
-                            .packed = 1};
+  return (cholmod_sparse){.nrow = count,
+                          .ncol = count,
+                          .nzmax = (size_t)graph->begin[count],
+                          .p = graph->begin,
+                          .i = graph->row,
+                          .stype = -1,
+                          .itype = CHOLMOD_INT,
+                          .xtype = CHOLMOD_PATTERN,
+                          .dtype = CHOLMOD_DOUBLE,
+                          .sorted = 1,
+                          .packed = 1};
+}
+
+static Status order_graph(CholmodSolver *solver, VertexGraph *graph) {
+  cholmod_sparse pattern = view(graph);
   int is_ok = graph->node_count < SMALL_GRAPH
                   ? cholmod_amd(&pattern, NULL, 0, graph->order, &solver->common)
                   : cholmod_metis(&pattern, NULL, 0, 1, graph->order, &solver->common);
-  if (!is_ok) return fail_in(solver, "ordering");
-  int place = 0;
-  for (int i = 0; i < graph->node_count; i++)
-    for (int u = graph->first[graph->order[i]]; u < graph->first[graph->order[i] + 1]; u++)
-      graph->permutation[place++] = u;
-  return STATUS_OK;
+  return is_ok ? STATUS_OK : fail_in(solver, "ordering");
 }
 
 static Status order(CholmodSolver *solver, const FemMatrix *matrix, VertexGraph *graph) {
@@ -185,50 +162,57 @@ static Status order(CholmodSolver *solver, const FemMatrix *matrix, VertexGraph 
   return order_graph(solver, graph);
 }
 
+static Status build_tree(CholmodSolver *solver, const FemMatrix *matrix, const VertexGraph *graph) {
+  cholmod_sparse pattern = view(graph);
+  cholmod_factor *symbolic = cholmod_analyze_p(&pattern, graph->order, NULL, 0, &solver->common);
+  if (!symbolic) return fail_in(solver, "analysis");
+  FemFrontDef def = {.node_count = graph->node_count,
+                     .first = graph->first,
+                     .begin = graph->begin,
+                     .row = graph->row,
+                     .col_begin = matrix->col_begin,
+                     .order = symbolic->Perm,
+                     .front_count = (int)symbolic->nsuper,
+                     .place = symbolic->super,
+                     .row_begin = symbolic->pi,
+                     .rows = symbolic->s};
+  Status status = fem_front_tree_create(&solver->tree, &def);
+  cholmod_free_factor(&symbolic, &solver->common);
+  return status;
+}
+
 static Status analyse_matrix(CholmodSolver *solver, const FemMatrix *matrix) {
   VertexGraph graph = {0};
   Status status = order(solver, matrix, &graph);
-  if (status == STATUS_OK) {
-    cholmod_sparse symmetric = view(matrix);
-    solver->factor = cholmod_analyze_p(&symmetric, graph.permutation, NULL, 0, &solver->common);
-    if (!solver->factor) status = fail_in(solver, "analysis");
-  }
+  if (status == STATUS_OK) status = build_tree(solver, matrix, &graph);
   free_graph(&graph);
-  return status;
+  TRY(status);
+  return fem_front_factor_create(&solver->factor, &solver->tree);
 }
 
 static Status analyse(void *self, const FemMatrix *pattern) {
   CholmodSolver *solver = self;
   double began = clock_wall_s();
   forget_factor(solver);
-  solver->size = pattern->size;
-  solver->layout = pattern->layout;
   TRY(analyse_matrix(solver, pattern));
+  solver->layout = pattern->layout;
   solver->stats.analyses++;
-  solver->stats.factor_entries = solver->common.lnz;
+  solver->stats.factor_entries = solver->tree.entry_count;
   solver->stats.analyse_s += clock_wall_s() - began;
   return STATUS_OK;
 }
 
 static Status refactor(CholmodSolver *solver, const FemMatrix *matrix) {
-  cholmod_common *common = &solver->common;
   if (!fem_solver_is_finite(matrix->value, matrix->entry_count))
     return status_fail(STATUS_RETRY, "the condensed matrix is not finite");
-  cholmod_sparse symmetric = view(matrix);
-  int before = fem_solver_use_threads(1), is_ok = 0;
-#pragma omp teams num_teams(1) thread_limit(1)
-  is_ok = cholmod_factorize(&symmetric, solver->factor, common);
-  fem_solver_use_threads(before);
-  if (common->status == CHOLMOD_NOT_POSDEF || (is_ok && solver->factor->minor < (size_t)solver->size))
-    return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");
-  return is_ok ? STATUS_OK : fail_in(solver, "factorisation");
+  return fem_front_factor_make(&solver->factor, matrix->value);
 }
 
 static Status factorise(void *self, const FemMatrix *stiffness, const FemMatrix *damping,
                         const double *mass_of_unknown, double c) {
   CholmodSolver *solver = self;
   (void)damping, (void)mass_of_unknown, (void)c;
-  if (!solver->factor || stiffness->layout != solver->layout)
+  if (solver->layout == 0 || stiffness->layout != solver->layout)
     return status_fail(STATUS_SOLVER, "cholmod: this layout of the matrix has not been analysed");
   double began = clock_wall_s();
   Status status = refactor(solver, stiffness);
@@ -245,24 +229,10 @@ static Status solve(void *self, const double *b, double *x) {
   CholmodSolver *solver = self;
   if (!solver->is_factorised) return status_fail(STATUS_SOLVER, "cholmod: no factor to solve with");
   double began = clock_wall_s();
-  size_t size = (size_t)solver->size;
-  cholmod_dense right = {.nrow = size,
-                         .ncol = 1,
-                         .nzmax = size,
-                         .d = size,
-                         .x = (void *)(uintptr_t)b, // only read
-                         .xtype = CHOLMOD_REAL,
-                         .dtype = CHOLMOD_DOUBLE};
-  int before = fem_solver_use_threads(1); // bound by memory, not by arithmetic
-  int is_ok = cholmod_solve2(CHOLMOD_A, solver->factor, &right, NULL, &solver->x, NULL, &solver->y,
-                             &solver->e, &solver->common);
-  fem_solver_use_threads(before);
-  if (!is_ok) return fail_in(solver, "solution");
-  const double *solution = solver->x->x;
-  for (size_t i = 0; i < size; i++) x[i] = solution[i];
+  fem_front_factor_solve(&solver->factor, b, x);
   solver->stats.solves++;
   solver->stats.solve_s += clock_wall_s() - began;
-  if (!fem_solver_is_finite(x, solver->size))
+  if (!fem_solver_is_finite(x, solver->tree.size))
     return status_fail(STATUS_RETRY, "the solution of the condensed system is not finite");
   return STATUS_OK;
 }

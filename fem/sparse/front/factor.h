@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The numbers of a factor L of A = L Lᵀ by fronts, and solutions by it. Domains and large fronts' pieces go to
+// the threads that OpenMP has; which piece is added when depends on the tree alone, so all bits are the same on
+// any number of threads.
+#ifndef TETLAP_FEM_SPARSE_FRONT_FACTOR_H
+#define TETLAP_FEM_SPARSE_FRONT_FACTOR_H
+
+#include "fem/sparse/front/tree.h"
+
+typedef struct FemFrontFactor {
+  const FemFrontTree *tree; // borrowed
+  double *values;           // panels                                          (tree->value_count)
+  double **updates;         // what a front leaves to its parent, while both are made (front_count)
+  double **stacks;          // of each thread: updates within a domain         (stack_count), (tree->stack)
+  int stack_count;
+  double *x;       // in the order of elimination                              (tree->size)
+  double *carried; // of the rows below of each front                          (tree->carried_count)
+} FemFrontFactor;
+
+// A zeroed factor can be destroyed.
+Status fem_front_factor_create(FemFrontFactor *factor, const FemFrontTree *tree);
+void fem_front_factor_destroy(FemFrontFactor *factor);
+
+// From the values of the matrix whose places the tree has. STATUS_RETRY: not positive definite.
+Status fem_front_factor_make(FemFrontFactor *factor, const double *values);
+
+// x = A⁻¹ b; they may be the same.
+void fem_front_factor_solve(FemFrontFactor *factor, const double *b, double *x);
+
+#endif
