@@ -55,6 +55,9 @@ typedef struct FemSolverOps {
   // Optional, of iterative solvers whose tolerance the scene does not say: that of the solves to come, at
   // least the solver's own, as far as Newton's method needs it. 0: its own again.
   void (*aim)(void *self, double tolerance);
+  // Optional, before the first analysis, of a solver without a tolerance: its solutions need not be exact from
+  // now on, since they serve as a preconditioner. They are then symmetric and positive definite maps of b.
+  void (*be_rough)(void *self);
   // Optional: what was kept for the numbers to come is dropped; the next factorise begins from nothing.
   void (*forget)(void *self);
   void (*destroy)(void *self);

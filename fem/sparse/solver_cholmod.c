@@ -22,6 +22,7 @@ typedef struct CholmodSolver {
   FemFrontFactor factor;
   long long layout; // that was analysed; 0: none
   bool is_factorised;
+  bool is_rough; // solutions serve as a preconditioner only
   FemSolverStats stats;
 } CholmodSolver;
 
@@ -187,7 +188,7 @@ static Status analyse_matrix(CholmodSolver *solver, const FemMatrix *matrix) {
   if (status == STATUS_OK) status = build_tree(solver, matrix, &graph);
   free_graph(&graph);
   TRY(status);
-  return fem_front_factor_create(&solver->factor, &solver->tree);
+  return fem_front_factor_create(&solver->factor, &solver->tree, solver->is_rough);
 }
 
 static Status analyse(void *self, const FemMatrix *pattern) {
@@ -229,12 +230,19 @@ static Status solve(void *self, const double *b, double *x) {
   CholmodSolver *solver = self;
   if (!solver->is_factorised) return status_fail(STATUS_SOLVER, "cholmod: no factor to solve with");
   double began = clock_wall_s();
-  fem_front_factor_solve(&solver->factor, b, x);
+  if (solver->is_rough)
+    fem_front_factor_solve_roughly(&solver->factor, b, x);
+  else
+    fem_front_factor_solve(&solver->factor, b, x);
   solver->stats.solves++;
   solver->stats.solve_s += clock_wall_s() - began;
   if (!fem_solver_is_finite(x, solver->tree.size))
     return status_fail(STATUS_RETRY, "the solution of the condensed system is not finite");
   return STATUS_OK;
+}
+
+static void be_rough(void *self) {
+  ((CholmodSolver *)self)->is_rough = true;
 }
 
 static const FemSolverStats *stats(const void *self) {
@@ -249,6 +257,7 @@ const FemSolverOps fem_solver_cholmod = {
     .analyse = analyse,
     .factorise = factorise,
     .solve = solve,
+    .be_rough = be_rough,
     .destroy = destroy,
     .stats = stats,
 };

@@ -27,13 +27,15 @@ static Status no_memory(void) {
   return status_no_memory("the factor of the condensed system (try solver.linear: pcg)");
 }
 
-Status fem_front_factor_create(FemFrontFactor *factor, const FemFrontTree *tree) {
+Status fem_front_factor_create(FemFrontFactor *factor, const FemFrontTree *tree, bool with_rough) {
   *factor = (FemFrontFactor){.tree = tree};
   factor->values = memory_zeroed(tree->value_count, sizeof *factor->values);
   factor->updates = memory_zeroed((size_t)tree->front_count, sizeof *factor->updates);
   factor->x = memory_zeroed((size_t)tree->size, sizeof *factor->x);
   factor->carried = memory_zeroed(tree->carried_count, sizeof *factor->carried);
-  if (factor->values && factor->updates && factor->x && factor->carried) return STATUS_OK;
+  if (with_rough) factor->rough = memory_zeroed(tree->value_count, sizeof *factor->rough);
+  if (factor->values && factor->updates && factor->x && factor->carried && (factor->rough || !with_rough))
+    return STATUS_OK;
   fem_front_factor_destroy(factor);
   return no_memory();
 }
@@ -47,7 +49,7 @@ static void free_stacks(FemFrontFactor *factor) {
 
 void fem_front_factor_destroy(FemFrontFactor *factor) {
   free_stacks(factor);
-  memory_free(factor->values), memory_free(factor->updates);
+  memory_free(factor->values), memory_free(factor->rough), memory_free(factor->updates);
   memory_free(factor->x), memory_free(factor->carried);
   *factor = (FemFrontFactor){0};
 }
@@ -171,6 +173,14 @@ static bool eliminate_large(int own, int height, FemDense panel, FemDense update
   return true;
 }
 
+// The panel in single precision.
+static void round_panel(FemFrontFactor *factor, const FemFront *front) {
+  const double *from = factor->values + front->values;
+  float *to = factor->rough + front->values;
+  size_t count = (size_t)front->own * (size_t)front->height;
+  for (size_t i = 0; i < count; i++) to[i] = (float)from[i];
+}
+
 static void fail(Make *make, Status status) {
   atomic_store(&make->failure, status);
 }
@@ -188,6 +198,7 @@ static void eliminate(Make *make, const FemFront *front, double *update) {
   bool is_ok = is_cut ? eliminate_large(front->own, front->height, panel, left)
                       : eliminate_small(front->own, front->height, panel, left);
   if (!is_ok) fail(make, STATUS_RETRY);
+  if (make->factor->rough) round_panel(make->factor, front);
 }
 
 static size_t update_size(const FemFront *front) {
@@ -301,7 +312,12 @@ static void gather_below(FemFrontFactor *factor, const FemFront *front) {
 }
 
 static FemSweepPanel panel_of(const FemFrontFactor *factor, const FemFront *front) {
-  return (FemSweepPanel){.own = front->own, .height = front->height, .values = factor->values + front->values};
+  FemSweepPanel panel = {.own = front->own, .height = front->height};
+  if (factor->is_rough)
+    panel.rough = factor->rough + front->values;
+  else
+    panel.values = factor->values + front->values;
+  return panel;
 }
 
 // A panel that is worth being cut into pieces.
@@ -389,8 +405,9 @@ static void sweep_root(FemFrontFactor *factor, int root) {
   go_up_subtree(factor, root);
 }
 
-void fem_front_factor_solve(FemFrontFactor *factor, const double *b, double *x) {
+static void solve(FemFrontFactor *factor, bool is_rough, const double *b, double *x) {
   const FemFrontTree *tree = factor->tree;
+  factor->is_rough = is_rough;
   for (int i = 0; i < tree->size; i++) factor->x[i] = b[tree->unknown[i]];
 #pragma omp parallel
 #pragma omp single
@@ -400,4 +417,12 @@ void fem_front_factor_solve(FemFrontFactor *factor, const double *b, double *x) 
       sweep_root(factor, f);
     }
   for (int i = 0; i < tree->size; i++) x[tree->unknown[i]] = factor->x[i];
+}
+
+void fem_front_factor_solve(FemFrontFactor *factor, const double *b, double *x) {
+  solve(factor, false, b, x);
+}
+
+void fem_front_factor_solve_roughly(FemFrontFactor *factor, const double *b, double *x) {
+  solve(factor, true, b, x);
 }

@@ -10,6 +10,8 @@
 typedef struct FemFrontFactor {
   const FemFrontTree *tree; // borrowed
   double *values;           // panels                                          (tree->value_count)
+  float *rough;             // the same in single precision; NULL: none        (tree->value_count)
+  bool is_rough;            // of the solution that goes on
   double **updates;         // what a front leaves to its parent, while both are made (front_count)
   double **stacks;          // of each thread: updates within a domain         (stack_count), (tree->stack)
   int stack_count;
@@ -18,7 +20,7 @@ typedef struct FemFrontFactor {
 } FemFrontFactor;
 
 // A zeroed factor can be destroyed.
-Status fem_front_factor_create(FemFrontFactor *factor, const FemFrontTree *tree);
+Status fem_front_factor_create(FemFrontFactor *factor, const FemFrontTree *tree, bool with_rough);
 void fem_front_factor_destroy(FemFrontFactor *factor);
 
 // From the values of the matrix whose places the tree has. STATUS_RETRY: not positive definite.
@@ -26,5 +28,7 @@ Status fem_front_factor_make(FemFrontFactor *factor, const double *values);
 
 // x = A⁻¹ b; they may be the same.
 void fem_front_factor_solve(FemFrontFactor *factor, const double *b, double *x);
+// The same by the factor in single precision, symmetric and positive definite like A⁻¹: a preconditioner.
+void fem_front_factor_solve_roughly(FemFrontFactor *factor, const double *b, double *x);
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Solutions with the columns of one front: of its panel, `own` columns of `height` rows, a column after the
-// other, lower triangle first.
+// other, lower triangle first. In double precision or with the panel in single precision, which is half the
+// memory to be read; vectors are double in both.
 #ifndef TETLAP_FEM_SPARSE_FRONT_SWEEP_H
 #define TETLAP_FEM_SPARSE_FRONT_SWEEP_H
 
@@ -8,7 +9,8 @@
 
 typedef struct FemSweepPanel {
   int own, height;
-  const double *values;
+  const double *values; // NULL: in single precision
+  const float *rough;
 } FemSweepPanel;
 
 // x[begin, end) becomes that of L x = b, of the triangle of these columns.

@@ -165,7 +165,7 @@ static Status solve_following(FemIdaSolver *solver, double *x) {
   shift(solver);
   if (solver->followed >= FEM_FACTOR_SOLUTIONS) {
     TRY(catch_up(solver));
-    return solve_condensed(solver, x);
+    if (!solver->ops->be_rough) return solve_condensed(solver, x);
   }
   if (part->order) {
     right = solver->all, left = part->whole;
@@ -181,7 +181,7 @@ static Status solve(FemIdaSolver *solver, const double *b, double *x) {
   if (!solver->ops->is_condensed) return solver->ops->solve(solver->solver, b, x);
   int n = solver->part->count;
   condense(solver, b);
-  if (solver->follows && solver->c != solver->factor_c)
+  if (solver->follows && (solver->c != solver->factor_c || solver->ops->be_rough))
     TRY(solve_following(solver, x));
   else
     TRY(solve_condensed(solver, x));
@@ -215,6 +215,7 @@ static Status create(FemIdaSolver *solver, SUNContext context) {
   if (!solver->masses || !solver->right || !solver->all) return status_no_memory("the linear solver");
   for (int i = 0; i < part->count; i++) solver->masses[i] = model->mass[fem_part_dof(part, i) / 3];
   if (solver->follows) {
+    if (solver->ops->be_rough) solver->ops->be_rough(solver->solver);
     TRY(fem_cg_create(&solver->cg, part->n));
     solver->piece = memory_zeroed(part->order ? n : 0, sizeof *solver->piece);
     if (!solver->piece) return status_no_memory("the linear solver");
