@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Condensed system by a supernodal Cholesky factorisation: CHOLMOD orders and analyses, the numbers are those of
-// front/factor.h. Unknowns of one vertex have the same neighbours, so all of the analysis is done on the graph
-// of vertices (a third of the nodes, a ninth of the edges).
+// Condensed system by a supernodal Cholesky factorisation: CHOLMOD orders and analyses, the numbers are those
+// of front/factor.h. Unknowns of one vertex have the same neighbours, so all of the analysis is done on the
+// graph of vertices (a third of the nodes, a ninth of the edges).
 //
-// CHOLMOD's own numbers would not be the same on any number of threads: OpenBLAS divides its work by their number,
-// and the last bits of a factor with it. On one thread it would have one core.
+// CHOLMOD's own numbers would not be the same on any number of threads: OpenBLAS divides its work by their
+// number, and the last bits of a factor with it. On one thread it would have one core.
 #include "fem/sparse/solver.h"
 
 #include <suitesparse/cholmod.h>
@@ -15,6 +15,9 @@
 
 // Smaller graphs are ordered by minimum degree: nested dissection gains nothing there.
 enum { SMALL_GRAPH = 300 };
+
+// CHOLMOD's own 4, 16 and 48 columns of small fronts that are joined, for nodes of three.
+static const size_t FEW_COLUMNS[3] = {2, 6, 16};
 
 typedef struct CholmodSolver {
   cholmod_common common;
@@ -51,6 +54,7 @@ static Status create(void **self, int threads, double tolerance) {
   common->nmethods = 1;
   common->method[0].ordering = CHOLMOD_GIVEN;
   common->postorder = 1;
+  for (int k = 0; k < 3; k++) common->nrelax[k] = FEW_COLUMNS[k];
   return STATUS_OK;
 }
 
@@ -72,10 +76,10 @@ static void destroy(void *self) {
 // The graph of vertices that have unknowns, numbered anew: lower triangle with diagonal.
 typedef struct VertexGraph {
   int node_count;
-  int *begin;       //                                (node_count + 1)
-  int *row;         //                                (begin[node_count])
-  int *first;       // first unknown of each node     (node_count + 1)
-  int *order;       // node at each place             (node_count)
+  int *begin; //                                (node_count + 1)
+  int *row;   //                                (begin[node_count])
+  int *first; // first unknown of each node     (node_count + 1)
+  int *order; // node at each place             (node_count)
 } VertexGraph;
 
 static void free_graph(VertexGraph *graph) {
@@ -120,8 +124,7 @@ static Status build_graph(const FemMatrix *matrix, VertexGraph *graph, int *node
   graph->first = memory_zeroed(size + 1, sizeof *graph->first);
   graph->begin = memory_zeroed(size + 1, sizeof *graph->begin);
   graph->order = memory_zeroed(size, sizeof *graph->order);
-  if (!graph->first || !graph->begin || !graph->order)
-    return status_no_memory("the graph of the matrix");
+  if (!graph->first || !graph->begin || !graph->order) return status_no_memory("the graph of the matrix");
   number_nodes(matrix, graph, node_of_unknown);
   int edge_count = list_edges(matrix, graph, node_of_unknown, NULL, NULL);
   graph->row = memory_zeroed((size_t)edge_count, sizeof *graph->row);

@@ -109,9 +109,8 @@ static void add_update(const FemFrontTree *tree, const FemFront *child, const Fe
   for (const FemFrontRun *run = tree->runs + child->run_begin; run < end; run++)
     for (int c = 0; c < run->count; c++) {
       int column = run->to + c;
-      double *to = column < front->own
-                       ? panel + (size_t)column * (size_t)front->height
-                       : update + (size_t)(column - front->own) * (size_t)below - front->own;
+      double *to = column < front->own ? panel + (size_t)column * (size_t)front->height
+                                       : update + (size_t)(column - front->own) * (size_t)below - front->own;
       add_column(run, end, c, left + (size_t)(run->from + c) * (size_t)below_of(child), to);
     }
 }
@@ -126,7 +125,8 @@ static void assemble(const Make *make, int f, double *update) {
   place_entries(make, front, panel);
   for (size_t c = 0; c < below; c++) memset(update + c * below + c, 0, (below - c) * sizeof *update);
   for (int k = tree->child_begin[f]; k < tree->child_begin[f + 1]; k++)
-    add_update(tree, &tree->fronts[tree->children[k]], front, factor->updates[tree->children[k]], panel, update);
+    add_update(tree, &tree->fronts[tree->children[k]], front, factor->updates[tree->children[k]], panel,
+               update);
 }
 
 static FemDense part(FemDense whole, int row, int column) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The numbers of a factor L of A = L Lᵀ by fronts, and solutions by it. Domains and large fronts' pieces go to
-// the threads that OpenMP has; which piece is added when depends on the tree alone, so all bits are the same on
-// any number of threads.
+// The numbers of a factor L of A = L Lᵀ by fronts, and solutions by it. Domains and large fronts' pieces go
+// to the threads that OpenMP has; which piece is added when depends on the tree alone, so all bits are the
+// same on any number of threads.
 #ifndef TETLAP_FEM_SPARSE_FRONT_FACTOR_H
 #define TETLAP_FEM_SPARSE_FRONT_FACTOR_H
 

@@ -2,7 +2,10 @@
 #include "fem/sparse/front/sweep.h"
 
 // Columns that are taken together: a vector is read and written once for all of them.
-enum { TOGETHER = 4 };
+// Most nodes have three.
+enum { TOGETHER = 6, NODE = 3 };
+// Sums that are formed side by side.
+enum { LANES = 4 };
 
 // The loops that read all of a factor, also for the instructions that most processors have.
 #if defined(__x86_64__) && !defined(__clang__)

@@ -134,14 +134,15 @@ static void measure_stack(FemFrontTree *tree) {
   }
 }
 
-// The rows below of a front by consecutive unknowns, and by consecutive rows of the parent. `spans` and `runs`
-// NULL: only counted.
+// The rows below of a front by consecutive unknowns, and by consecutive rows of the parent. `spans` and
+// `runs` NULL: only counted.
 static void cut_rows(const Maker *maker, int f, FemFrontSpan *spans, int *span_count, FemFrontRun *runs,
                      int *run_count) {
   const FemFrontDef *def = maker->def;
   const int *rows = def->rows, parent = maker->tree->fronts[f].parent;
   int below = def->row_begin[f] + def->place[f + 1] - def->place[f], from = 0, to = 0, last = -2, to_end = -1;
-  int at = parent >= 0 ? def->row_begin[parent] : 0, parent_own = parent >= 0 ? maker->tree->fronts[parent].own : 0;
+  int at = parent >= 0 ? def->row_begin[parent] : 0,
+      parent_own = parent >= 0 ? maker->tree->fronts[parent].own : 0;
   *span_count = *run_count = 0;
   for (int k = below; k < def->row_begin[f + 1]; k++) {
     int width = maker->start[rows[k] + 1] - maker->start[rows[k]];
@@ -171,7 +172,8 @@ static Status list_rows(Maker *maker) {
     spans += (size_t)span_count, runs += (size_t)run_count;
   }
   if (spans > INT_MAX || runs > INT_MAX)
-    return status_fail(STATUS_SOLVER, "cholmod: the factor is too large to be numbered: use solver.linear: pcg");
+    return status_fail(STATUS_SOLVER,
+                       "cholmod: the factor is too large to be numbered: use solver.linear: pcg");
   tree->spans = memory_zeroed(spans, sizeof *tree->spans);
   tree->runs = memory_zeroed(runs, sizeof *tree->runs);
   if (!tree->spans || !tree->runs) return no_memory();
@@ -198,7 +200,8 @@ static Status count_blocks(Maker *maker) {
   const FemFrontDef *def = maker->def;
   FemFrontTree *tree = maker->tree;
   for (int v = 0; v < def->node_count; v++)
-    for (int k = def->begin[v]; k < def->begin[v + 1]; k++) maker->next[front_of(maker, v, def->row[k]) + 1]++;
+    for (int k = def->begin[v]; k < def->begin[v + 1]; k++)
+      maker->next[front_of(maker, v, def->row[k]) + 1]++;
   for (int f = 0; f < tree->front_count; f++) {
     maker->next[f + 1] += maker->next[f];
     tree->fronts[f].block_begin = maker->next[f];

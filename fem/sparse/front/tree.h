@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The elimination tree of a symmetric matrix by fronts: sets of columns with the same rows. A front's dense panel
-// holds its columns of the factor; what it leaves to later columns goes to its parent, the front that has the
-// first of its rows below.
+// The elimination tree of a symmetric matrix by fronts: sets of columns with the same rows. A front's dense
+// panel holds its columns of the factor; what it leaves to later columns goes to its parent, the front that
+// has the first of its rows below.
 //
 //   children ──► front: own columns │ rows below ──► parent (the first row below is one of its columns)
 //
-// Columns and rows are those of nodes (vertices with one to three unknowns each), in the order of elimination.
-// Subtrees with little work are domains: each is handled by one thread. Which they are depends on the matrix
-// alone.
+// Columns and rows are those of nodes (vertices with one to three unknowns each), in the order of
+// elimination. Subtrees with little work are domains: each is handled by one thread. Which they are depends
+// on the matrix alone.
 #ifndef TETLAP_FEM_SPARSE_FRONT_TREE_H
 #define TETLAP_FEM_SPARSE_FRONT_TREE_H
 
@@ -30,12 +30,12 @@ typedef struct FemFrontSpan {
 
 // Where the matrix's entries of two nodes, or of a node with itself, go.
 typedef struct FemFrontBlock {
-  int source[3];         // of each column of the node with the lower number: in the matrix's values
-  int row, column;       // in the front's panel
-  signed char width;     // columns in the matrix
-  signed char height;    // rows in the matrix; of a node with itself: as many as columns, from the diagonal
-  bool is_own;           // of a node with itself
-  bool is_turned;        // columns of the matrix are rows of the panel
+  int source[3];      // of each column of the node with the lower number: in the matrix's values
+  int row, column;    // in the front's panel
+  signed char width;  // columns in the matrix
+  signed char height; // rows in the matrix; of a node with itself: as many as columns, from the diagonal
+  bool is_own;        // of a node with itself
+  bool is_turned;     // columns of the matrix are rows of the panel
 } FemFrontBlock;
 
 typedef struct FemFront {
@@ -62,21 +62,21 @@ typedef struct FemFrontTree {
   FemFrontSpan *spans;
   FemFrontBlock *blocks;
   size_t value_count, carried_count;
-  size_t stack;        // most that a domain holds of what fronts leave [numbers]
+  size_t stack;       // most that a domain holds of what fronts leave [numbers]
   double entry_count; // of the factor
 } FemFrontTree;
 
 // What the analysis of a graph gives. All borrowed.
 typedef struct FemFrontDef {
   int node_count;
-  const int *first;      // first unknown of each node                        (node_count + 1)
+  const int *first;       // first unknown of each node                        (node_count + 1)
   const int *begin, *row; // the graph: lower triangle with diagonal, ascending (node_count + 1), (…)
-  const int *col_begin;  // of the matrix: an unknown's column begins with the own rows of its node
-  const int *order;      // node at each place                                (node_count)
+  const int *col_begin;   // of the matrix: an unknown's column begins with the own rows of its node
+  const int *order;       // node at each place                                (node_count)
   int front_count;
-  const int *place;      // first place of each front                         (front_count + 1)
-  const int *row_begin;  // of each front in rows                             (front_count + 1)
-  const int *rows;       // places, ascending, own ones first
+  const int *place;     // first place of each front                         (front_count + 1)
+  const int *row_begin; // of each front in rows                             (front_count + 1)
+  const int *rows;      // places, ascending, own ones first
 } FemFrontDef;
 
 // A zeroed tree can be destroyed.
