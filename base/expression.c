@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +11,7 @@
 
 enum {
   CONSTANT,
-  TIME,
+  ARGUMENT,
   ADD,
   SUBTRACT,
   MULTIPLY,
@@ -20,40 +21,50 @@ enum {
   FIRST_FUNCTION, // from here on as in `functions`
 };
 
-// One line a function; `apply1` or `apply2` gives value and rate.
+// f(a) by f, f′ and f″ there; what does not move keeps still where f′ or f″ is infinite.
+static ExpressionValue chain(ExpressionValue a, double value, double first, double second) {
+  ExpressionValue result = {value, 0, 0};
+  if (a.rate != 0) result.rate = first * a.rate;
+  if (a.rate != 0 && second != 0) result.curve = second * a.rate * a.rate;
+  if (a.curve != 0) result.curve += first * a.curve;
+  return result;
+}
+
+// One line a function; `apply1` or `apply2` gives value, rate and curve.
 static ExpressionValue do_sin(ExpressionValue a) {
-  return (ExpressionValue){sin(a.value), cos(a.value) * a.rate};
+  return chain(a, sin(a.value), cos(a.value), -sin(a.value));
 }
 static ExpressionValue do_cos(ExpressionValue a) {
-  return (ExpressionValue){cos(a.value), -sin(a.value) * a.rate};
+  return chain(a, cos(a.value), -sin(a.value), -cos(a.value));
 }
 static ExpressionValue do_tan(ExpressionValue a) {
-  double cosine = cos(a.value);
-  return (ExpressionValue){tan(a.value), a.rate / (cosine * cosine)};
+  double value = tan(a.value), first = 1 / (cos(a.value) * cos(a.value));
+  return chain(a, value, first, 2 * value * first);
 }
 static ExpressionValue do_exp(ExpressionValue a) {
-  return (ExpressionValue){exp(a.value), exp(a.value) * a.rate};
+  double value = exp(a.value);
+  return chain(a, value, value, value);
 }
 static ExpressionValue do_log(ExpressionValue a) {
-  return (ExpressionValue){log(a.value), a.rate / a.value};
+  return chain(a, log(a.value), 1 / a.value, -1 / (a.value * a.value));
 }
 static ExpressionValue do_sqrt(ExpressionValue a) {
   double root = sqrt(a.value);
-  return (ExpressionValue){root, a.rate == 0 ? 0 : a.rate / (2 * root)};
+  return chain(a, root, 1 / (2 * root), -1 / (4 * root * a.value));
 }
 static ExpressionValue do_abs(ExpressionValue a) {
   bool is_falling = a.value < 0 || (a.value == 0 && a.rate < 0);
-  return (ExpressionValue){fabs(a.value), is_falling ? -a.rate : a.rate};
+  return chain(a, fabs(a.value), is_falling ? -1 : 1, 0);
 }
 static ExpressionValue do_floor(ExpressionValue a) {
-  return (ExpressionValue){floor(a.value), 0};
+  return (ExpressionValue){floor(a.value), 0, 0};
 }
 static ExpressionValue do_step(ExpressionValue a) {
-  return (ExpressionValue){a.value < 0 ? 0 : 1, 0};
+  return (ExpressionValue){a.value < 0 ? 0 : 1, 0, 0};
 }
 static ExpressionValue do_smooth(ExpressionValue a) {
   double x = fmin(fmax(a.value, 0), 1);
-  return (ExpressionValue){x * x * (3 - 2 * x), 6 * x * (1 - x) * a.rate};
+  return chain(a, x * x * (3 - 2 * x), 6 * x * (1 - x), x == a.value ? 6 - 12 * x : 0);
 }
 static ExpressionValue do_min(ExpressionValue a, ExpressionValue b) {
   bool is_first = a.value < b.value || (a.value == b.value && a.rate < b.rate);
@@ -85,7 +96,7 @@ static double to_zero_or_one(ExpressionValue a, ExpressionValue b) {
   return fmin(time_to(a, 0), time_to(a, 1));
 }
 static double to_each_other(ExpressionValue a, ExpressionValue b) {
-  return time_to((ExpressionValue){a.value - b.value, a.rate - b.rate}, 0);
+  return time_to((ExpressionValue){a.value - b.value, a.rate - b.rate, 0}, 0);
 }
 
 static const struct {
@@ -120,6 +131,7 @@ const char *expression_function(int index, const char **help) {
 // Recursive descent; each level of precedence is a function below.
 typedef struct Parser {
   Expression *expression;
+  const char *argument; // the name of what it is a function of
   const char *next;
   int nesting, stack, deepest;
 } Parser;
@@ -180,12 +192,12 @@ static Status parse_number(Parser *parser) {
 
 static Status fail_name(const Parser *parser, const char *begin, const char *name) {
   TextGuess guess = text_guess_of(name);
-  text_guess_offer(&guess, "t");
+  text_guess_offer(&guess, parser->argument);
   text_guess_offer(&guess, "pi");
   for (int f = 0; f < FUNCTION_COUNT; f++) text_guess_offer(&guess, functions[f].name);
   char expected[160];
   size_t used = 0;
-  text_append(expected, sizeof expected, &used, "t, pi");
+  text_append(expected, sizeof expected, &used, "%s, pi", parser->argument);
   for (int f = 0; f < FUNCTION_COUNT; f++)
     text_append(expected, sizeof expected, &used, ", %s", functions[f].name);
   if (guess.best) text_append(expected, sizeof expected, &used, " (did you mean %s?)", guess.best);
@@ -208,7 +220,7 @@ static Status parse_name(Parser *parser) {
   char name[16] = "";
   for (size_t i = 0; is_letter(*parser->next) || is_digit(*parser->next); i++, parser->next++)
     if (i < sizeof name - 1) name[i] = *parser->next;
-  if (strcmp(name, "t") == 0) return emit(parser, TIME, 0, 1);
+  if (strcmp(name, parser->argument) == 0) return emit(parser, ARGUMENT, 0, 1);
   if (strcmp(name, "pi") == 0) return emit(parser, CONSTANT, M_PI, 1);
   for (int f = 0; f < FUNCTION_COUNT; f++)
     if (strcmp(name, functions[f].name) == 0) return parse_call(parser, f);
@@ -219,7 +231,9 @@ static Status parse_primary(Parser *parser) {
   char c = peek(parser);
   if (is_digit(c) || c == '.') return parse_number(parser);
   if (is_letter(c)) return parse_name(parser);
-  if (!accept(parser, '(')) return fail_at(parser, parser->next, "a number, t, a function or '('");
+  char expected[64];
+  snprintf(expected, sizeof expected, "a number, %s, a function or '('", parser->argument);
+  if (!accept(parser, '(')) return fail_at(parser, parser->next, expected);
   TRY(parse_sum(parser));
   return accept(parser, ')') ? STATUS_OK : fail_at(parser, parser->next, "')' or an operator");
 }
@@ -265,12 +279,16 @@ static Status parse_sum(Parser *parser) {
 }
 
 Status expression_parse(Expression *expression, const char *text) {
+  return expression_parse_of(expression, "t", text);
+}
+
+Status expression_parse_of(Expression *expression, const char *argument, const char *text) {
   *expression = (Expression){.count = 0};
   if (strlen(text) >= sizeof expression->text)
     return status_fail(STATUS_INPUT, "a formula has at most %d characters; give a table",
                        EXPRESSION_MAX_TEXT - 1);
   memcpy(expression->text, text, strlen(text) + 1);
-  Parser parser = {.expression = expression, .next = expression->text};
+  Parser parser = {.expression = expression, .argument = argument, .next = expression->text};
   TRY(parse_sum(&parser));
   return peek(&parser) == 0 ? STATUS_OK : fail_at(&parser, parser.next, "an operator");
 }
@@ -278,22 +296,37 @@ Status expression_parse(Expression *expression, const char *text) {
 // (aᵇ)′ = b aᵇ⁻¹ a′ + aᵇ log a b′; the second term only where the exponent moves, so that t^2 is fine at
 // t ≤ 0.
 static ExpressionValue raise(ExpressionValue a, ExpressionValue b) {
-  double value = pow(a.value, b.value), rate = 0;
-  if (a.rate != 0 && b.value != 0) rate += b.value * pow(a.value, b.value - 1) * a.rate;
-  if (b.rate != 0) rate += value * log(a.value) * b.rate;
-  return (ExpressionValue){value, rate};
+  double n = b.value, first = n == 0 ? 0 : n * pow(a.value, n - 1);
+  double second = n == 0 || n == 1 ? 0 : n * (n - 1) * pow(a.value, n - 2);
+  ExpressionValue result = chain(a, pow(a.value, n), first, second);
+  if (b.rate == 0 && b.curve == 0) return result;
+  double value = result.value, logarithm = log(a.value);
+  result.rate += value * logarithm * b.rate;
+  result.curve += value * logarithm * (b.curve + logarithm * b.rate * b.rate);
+  if (a.rate != 0) result.curve += 2 * b.rate * a.rate * (pow(a.value, n - 1) + first * logarithm);
+  return result;
+}
+
+static ExpressionValue multiply(ExpressionValue a, ExpressionValue b) {
+  return (ExpressionValue){a.value * b.value, a.rate * b.value + a.value * b.rate,
+                           a.curve * b.value + 2 * a.rate * b.rate + a.value * b.curve};
+}
+
+static ExpressionValue divide(ExpressionValue a, ExpressionValue b) {
+  double value = a.value / b.value, rate = (a.rate - value * b.rate) / b.value;
+  return (ExpressionValue){value, rate, (a.curve - 2 * rate * b.rate - value * b.curve) / b.value};
 }
 
 static ExpressionValue apply(int operation, ExpressionValue a, ExpressionValue b) {
   switch (operation) {
   case ADD:
-    return (ExpressionValue){a.value + b.value, a.rate + b.rate};
+    return (ExpressionValue){a.value + b.value, a.rate + b.rate, a.curve + b.curve};
   case SUBTRACT:
-    return (ExpressionValue){a.value - b.value, a.rate - b.rate};
+    return (ExpressionValue){a.value - b.value, a.rate - b.rate, a.curve - b.curve};
   case MULTIPLY:
-    return (ExpressionValue){a.value * b.value, a.rate * b.value + a.value * b.rate};
+    return multiply(a, b);
   case DIVIDE:
-    return (ExpressionValue){a.value / b.value, (a.rate - a.value / b.value * b.rate) / b.value};
+    return divide(a, b);
   case POWER:
     return raise(a, b);
   default:
@@ -308,7 +341,7 @@ static bool is_binary(int operation) {
 
 bool expression_is_constant(const Expression *expression) {
   for (int i = 0; i < expression->count; i++)
-    if (expression->codes[i].operation == TIME) return false;
+    if (expression->codes[i].operation == ARGUMENT) return false;
   return true;
 }
 
@@ -343,7 +376,7 @@ static Piece operate(int operation, Piece a, Piece b, double *next_kink) {
   if (makes_kink) *next_kink = fmin(*next_kink, functions[f].kink(a.now, b.now));
   Piece result = {.is_straight = is_straight(operation, a, b)};
   if (operation == NEGATE)
-    result.now = (ExpressionValue){-a.now.value, -a.now.rate};
+    result.now = (ExpressionValue){-a.now.value, -a.now.rate, -a.now.curve};
   else if (is_binary(operation))
     result.now = apply(operation, a.now, b.now);
   else
@@ -351,17 +384,17 @@ static Piece operate(int operation, Piece a, Piece b, double *next_kink) {
   return result;
 }
 
-// Value and rate at t; `next_kink`: how long until one that is foreseen.
+// Value and derivatives at t; `next_kink`: how long until one that is foreseen.
 static ExpressionValue run(const Expression *expression, double t, double *next_kink) {
-  const Piece none = {{0, 0}, true};
-  Piece stack[EXPRESSION_MAX_DEPTH + 1] = {{{0, 0}, true}};
+  const Piece none = {{0, 0, 0}, true};
+  Piece stack[EXPRESSION_MAX_DEPTH + 1] = {{{0, 0, 0}, true}};
   int top = -1;
   *next_kink = INFINITY;
   for (int i = 0; i < expression->count; i++) {
     const ExpressionCode *code = &expression->codes[i];
-    if (code->operation == CONSTANT || code->operation == TIME) {
-      bool is_time = code->operation == TIME;
-      stack[++top] = (Piece){{is_time ? t : code->number, is_time}, true};
+    if (code->operation == CONSTANT || code->operation == ARGUMENT) {
+      bool is_argument = code->operation == ARGUMENT;
+      stack[++top] = (Piece){{is_argument ? t : code->number, is_argument, 0}, true};
       continue;
     }
     bool takes_two = is_binary(code->operation);

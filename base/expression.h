@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Functions of time written as formulas, "0.1*sin(2*pi*t)": parsed once into a short list of instructions for
-// a stack, then evaluated together with the exact derivative (forward differentiation). A formula has no
-// other names than these, no loops and no files; parsing and evaluation are bounded in time and memory.
+// Functions of time, or of something else, written as formulas, "0.1*sin(2*pi*t)": parsed once into a short
+// list of instructions for a stack, then evaluated together with the exact first and second derivative
+// (forward differentiation). A formula has no other names than these, no loops and no files; parsing and
+// evaluation are bounded in time and memory.
 //
 //   numbers, t, pi          + - * / ^ (right to left, before a sign: −t^2 = −(t^2)), ( )
 //   sin cos tan exp log sqrt abs floor
@@ -31,10 +32,13 @@ typedef struct Expression {
 
 typedef struct ExpressionValue {
   double value, rate; // f(t), df/dt; at a jump or a kink the rate from above
+  double curve;       // d²f/dt²; of a kink nothing
 } ExpressionValue;
 
 // STATUS_INPUT: the message says at which character (from 1) and what was expected there.
 Status expression_parse(Expression *expression, const char *text);
+// The same of a formula whose argument has another name than t.
+Status expression_parse_of(Expression *expression, const char *argument, const char *text);
 
 // Whether t does not occur in it.
 bool expression_is_constant(const Expression *expression);

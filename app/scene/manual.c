@@ -121,9 +121,9 @@ static const char *type_of(const SceneKey *key) {
   case SCENE_ROWS:
     return "list of [t, x, y, z]";
   case SCENE_PROFILE:
-    return "list of [t, value]";
+    return key->argument ? "list of [d, value]" : "list of [t, value]";
   case SCENE_FORMULA:
-    return "formula of t";
+    return key->argument ? "formula of d" : "formula of t";
   case SCENE_SECTION:
     if (!key->section->shorthand) return "mapping";
     return stands_for_number(key->section) ? "number or mapping" : "text or mapping";

@@ -209,8 +209,9 @@ static Status read_increasing_rows(const SceneKey *key, const SceneNode *node, v
     app_scene_tree_path(node, path, sizeof path);
     bool is_flat = node->first->kind == SCENE_NODE_NUMBER;
     const SceneNode *row = app_scene_tree_at(node, is_flat ? width * i : i);
-    return app_scene_tree_fail(row, "%s: the time %g of row %d does not follow %g; times must increase", path,
-                               rows[width * i], i, rows[width * (i - 1)]);
+    const char *argument = app_scene_keys_argument(key);
+    return app_scene_tree_fail(row, "%s: %s = %g of row %d does not follow %g; %s must increase", path,
+                               argument, rows[width * i], i, rows[width * (i - 1)], argument);
   }
   return STATUS_OK;
 }
@@ -222,7 +223,7 @@ static Status read_formula(const SceneKey *key, const SceneNode *node, Expressio
   if (!expression) return status_no_memory("the scene");
   memory_free(*field);
   *field = expression;
-  bool is_parsed = expression_parse(expression, node->text) == STATUS_OK;
+  bool is_parsed = expression_parse_of(expression, app_scene_keys_argument(key), node->text) == STATUS_OK;
   expression->line = node->line;
   expression->column = node->column;
   if (is_parsed) return STATUS_OK;

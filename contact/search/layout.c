@@ -66,12 +66,17 @@ static double stiffness_of(const ContactSystemDef *def, int a, int b) {
                              : def->stiffness;
 }
 
+static const struct ContactLaw *law_of(const ContactSystemDef *def, int a, int b) {
+  return def->pair_laws ? def->pair_laws[a * (def->body_count + def->shape_count) + b] : NULL;
+}
+
 static ContactInterfaceDef interface_of_bodies(const ContactSystemDef *def, int a, int b) {
   bool one_sided = def->bodies[a].is_obstacle || def->bodies[b].is_obstacle;
   return (ContactInterfaceDef){.a = a,
                                .b = b,
                                .shape = -1,
                                .stiffness = stiffness_of(def, a, b),
+                               .law = law_of(def, a, b),
                                .weight = {one_sided ? !def->bodies[a].is_obstacle : 0.5,
                                           one_sided ? !def->bodies[b].is_obstacle : 0.5}};
 }
@@ -92,6 +97,7 @@ static void list_interfaces(ContactLayout *layout) {
                                   .b = def->body_count + h,
                                   .shape = h,
                                   .stiffness = stiffness_of(def, a, def->body_count + h),
+                                  .law = law_of(def, a, def->body_count + h),
                                   .weight = {1, 0}};
   layout->interface_count = count;
 }

@@ -18,6 +18,7 @@ typedef struct ContactInterfaceDef {
   double weight[2]; // of each side's sum in U: ½ and ½ between bodies; 1 and 0 against an obstacle, so that
                     // > 0 also says that the side carries unknowns; `field` asks only that
   double stiffness; // κ
+  const struct ContactLaw *law; // of the potential `field`, in place of κ; NULL: linear. Borrowed
 } ContactInterfaceDef;
 
 // A cell of the contact mesh (contact/surface/mesh.h) of side 0 and one of side 1. Without the potential

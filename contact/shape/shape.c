@@ -128,6 +128,50 @@ void contact_shape_overlap(const ContactShape *shape, double time, const double 
     contact_halfspace_overlap(tet, point, shape->normal, volume, gradient, hessian);
 }
 
+double contact_shape_middle(const ContactShape *shape) {
+  double deepest = INFINITY;
+  if (shape->kind == CONTACT_SHAPE_BALL) return shape->radius / 2;
+  for (int k = 0; shape->kind == CONTACT_SHAPE_CONVEX && k < shape->convex->plane_count; k++)
+    deepest = fmin(deepest, shape->convex->offsets[k]);
+  return deepest;
+}
+
+double contact_shape_depth(const ContactShape *shape, double time, Vec3 x) {
+  double deepest = INFINITY;
+  Pose pose = pose_of(shape, time);
+  Vec3 arm = vec3_sub(x, pose.point);
+  switch (shape->kind) {
+  case CONTACT_SHAPE_HALFSPACE:
+    return -vec3_dot(vec3_at(shape->normal), arm);
+  case CONTACT_SHAPE_BALL:
+    return (shape->radius * shape->radius - vec3_dot(arm, arm)) / (2 * shape->radius);
+  case CONTACT_SHAPE_CONVEX:
+    arm = (Vec3){vec3_dot(pose.axes[0], arm), vec3_dot(pose.axes[1], arm), vec3_dot(pose.axes[2], arm)};
+    for (int k = 0; k < shape->convex->plane_count; k++)
+      deepest = fmin(deepest, shape->convex->offsets[k] - vec3_dot(shape->convex->normals[k], arm));
+    return deepest;
+  }
+  return deepest;
+}
+
+ContactShape contact_shape_shrink(const ContactShape *shape, double depth, struct ContactConvex *solid) {
+  ContactShape smaller = *shape;
+  switch (shape->kind) {
+  case CONTACT_SHAPE_HALFSPACE:
+    vec3_store(smaller.point, vec3_sub(vec3_at(shape->point), vec3_scale(depth, vec3_at(shape->normal))));
+    break;
+  case CONTACT_SHAPE_BALL:
+    smaller.radius = sqrt(fmax(shape->radius * (shape->radius - 2 * depth), 0));
+    break;
+  case CONTACT_SHAPE_CONVEX:
+    *solid = *shape->convex;
+    for (int k = 0; k < solid->plane_count; k++) solid->offsets[k] -= depth;
+    smaller.convex = solid;
+    break;
+  }
+  return smaller;
+}
+
 void contact_shape_press(const ContactShape *shape, double time, const double tet[12], double rest_volume,
                          double *volume, double *energy, double gradient[12], double hessian[144],
                          bool is_full) {

@@ -25,6 +25,13 @@ void contact_shape_overlap(const ContactShape *shape, double time, const double 
 void contact_shape_press(const ContactShape *shape, double time, const double tet[12], double rest_volume,
                          double *volume, double *energy, double gradient[12], double hessian[144],
                          bool is_full);
+// The depth of x in the shape, as there [m]; negative outside. And that of its middle, the largest; INFINITY:
+// there is none.
+double contact_shape_depth(const ContactShape *shape, double time, Vec3 x);
+double contact_shape_middle(const ContactShape *shape);
+// What of the shape is deeper than `depth`, which is less than its middle's. `solid` is kept, borrowed, where
+// the shape has one.
+ContactShape contact_shape_shrink(const ContactShape *shape, double depth, struct ContactConvex *solid);
 // Distance of a tetrahedron from the shape [m], negative once they overlap; of a convex solid as in
 // overlap/separation.h, ending early with a lower bound once it exceeds `enough`.
 double contact_shape_separation(const ContactShape *shape, double time, const double tet[12], double enough);

@@ -99,8 +99,9 @@ static void add_push(const ContactLayout *layout, const ContactEvaluation *evalu
   const ContactFieldPair *field = &evaluation->fields[k];
   const ContactInterfaceDef *interface = &layout->interfaces[evaluation->pairs[k].interface];
   vec3_accumulate(push->force, vec3_at(field->force));
-  push->full += interface->stiffness * (field->weighed[0] * vec3_length(vec3_at(field->slopes[1])) +
-                                        field->weighed[1] * vec3_length(vec3_at(field->slopes[0])));
+  double stiffness = interface->law ? contact_field_secant(field) : interface->stiffness;
+  push->full += stiffness * (field->weighed[0] * vec3_length(vec3_at(field->slopes[1])) +
+                             field->weighed[1] * vec3_length(vec3_at(field->slopes[0])));
 }
 
 // The pairs of an element are not beside each other, so its sums are kept in `pushes` (elements of the
@@ -127,6 +128,14 @@ static Status find_rim(const ContactLayout *layout, const ContactEvaluation *eva
   *rim = fmax(0, lost_at_rim(layout, evaluation, patch, pushes));
   memory_free(pushes);
   return STATUS_OK;
+}
+
+// ½ F · depth of a patch, which is U where the law is linear.
+static double energy_of(const ContactLayout *layout, const ContactEvaluation *evaluation,
+                        const ContactPatch *patch) {
+  const ContactInterface *interface = &evaluation->interfaces[patch->interface];
+  if (!layout->interfaces[patch->interface].law) return patch->energy;
+  return interface->area > 0 ? 0.5 * interface->pressed * interface->volume / interface->area : 0;
 }
 
 // Whether P of the patch is the largest so far, or more energy is stored at about that; then `found` holds
@@ -160,7 +169,7 @@ static void find_way(FemAccuracy *accuracy, const FemModel *model, const double 
 static Status estimate(const ContactLayout *layout, const ContactEvaluation *evaluation,
                        const ContactPatch *patch, FemAccuracyPair *found) {
   found->estimated = found->pressed;
-  found->energy = patch->energy;
+  found->energy = energy_of(layout, evaluation, patch);
   found->edge = mean_edge(layout, &evaluation->patches, patch);
   return find_rim(layout, evaluation, patch, &found->rim);
 }
@@ -179,12 +188,13 @@ Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, ContactSy
   for (int p = 0; p < evaluation->patches.patch_count; p++) {
     const ContactPatch *patch = &evaluation->patches.patches[p];
     FemAccuracyPair *found = &accuracy->found[accuracy->found_count];
+    double energy = energy_of(layout, evaluation, patch);
     if (!is_largest(accuracy, &evaluation->interfaces[patch->interface], patch->interface, state->time,
-                    patch->energy + elastic, found))
+                    energy + elastic, found))
       continue;
-    if (patch->energy + elastic > GROWN * found->stored)
-      find_way(accuracy, model, state->positions, &layout->interfaces[patch->interface], patch->energy,
-               elastic, found);
+    if (energy + elastic > GROWN * found->stored)
+      find_way(accuracy, model, state->positions, &layout->interfaces[patch->interface], energy, elastic,
+               found);
     if (found->pressed > GROWN * found->estimated) TRY(estimate(layout, evaluation, patch, found));
     accuracy->places[accuracy->found_count++] = patch->interface;
   }

@@ -108,7 +108,7 @@ static void record_contact(const FemLedger *ledger, int i, Record *record) {
   const FemModel *model = ledger->system->model;
   const FemAccuracyPair *pair = &ledger->accuracy.pairs[i];
   const ContactInterfaceDef *interface = &contact_system_layout(contact_of(ledger))->interfaces[i];
-  FemEstimate estimate = fem_accuracy_estimate(pair, model, interface->stiffness);
+  FemEstimate estimate = fem_accuracy_estimate(pair, model, interface->law ? NAN : interface->stiffness);
   record_text(record, "a", fem_compliance_party_name(model, interface->a));
   record_text(record, "b", fem_compliance_party_name(model, interface->b));
   record_number(record, "force_max_N", pair->force);
@@ -182,7 +182,7 @@ bool fem_ledger_describe(const FemLedger *ledger, int rank, char *text, size_t s
   if (i < 0) return false;
   const FemAccuracyPair *pair = &ledger->accuracy.pairs[i];
   const ContactInterfaceDef *interface = &contact_system_layout(contact_of(ledger))->interfaces[i];
-  FemEstimate estimate = fem_accuracy_estimate(pair, model, interface->stiffness);
+  FemEstimate estimate = fem_accuracy_estimate(pair, model, interface->law ? NAN : interface->stiffness);
   size_t used = 0;
   text_append(text, size, &used, "'%s' and '%s'\n", fem_compliance_party_name(model, interface->a),
               fem_compliance_party_name(model, interface->b));

@@ -133,8 +133,7 @@ static Status choose_for_field(const FemModel *model, int party_count, double *s
   return status;
 }
 
-// The number of that body or obstacle, as a party: −1, none has that name.
-static int party_of(const FemModel *model, const char *name) {
+int fem_compliance_party(const FemModel *model, const char *name) {
   int party = model->body_count;
   for (int b = 0; b < model->body_count; b++)
     if (strcmp(model->bodies[b].name, name) == 0) return b;
@@ -158,7 +157,7 @@ const char *fem_compliance_party_name(const FemModel *model, int party) {
 
 static Status check_pair(const FemModel *model, const FemContactPairDef *pair) {
   for (int k = 0; k < 2; k++)
-    if (party_of(model, pair->names[k]) < 0)
+    if (fem_compliance_party(model, pair->names[k]) < 0)
       return status_fail(STATUS_INPUT, "%s: contact.pairs: no body or obstacle has the name '%s'",
                          fem_scene_where(model->scene, &pair->place).text, pair->names[k]);
   return STATUS_OK;
@@ -170,7 +169,7 @@ static Status apply_pairs(const FemModel *model, int party_count, double *stiffn
     const FemContactPairDef *pair = &contact->pairs[i];
     TRY(check_pair(model, pair));
     if (!(pair->stiffness > 0)) continue;
-    int a = party_of(model, pair->names[0]), b = party_of(model, pair->names[1]);
+    int a = fem_compliance_party(model, pair->names[0]), b = fem_compliance_party(model, pair->names[1]);
     if (a < model->body_count) stiffness[a * party_count + b] = pair->stiffness;
     if (b < model->body_count) stiffness[b * party_count + a] = pair->stiffness;
   }
@@ -182,7 +181,7 @@ double fem_compliance_friction(const FemModel *model, int a, int b) {
   double friction = contact->friction;
   for (int i = 0; i < contact->pair_count; i++) {
     const FemContactPairDef *pair = &contact->pairs[i];
-    int first = party_of(model, pair->names[0]), second = party_of(model, pair->names[1]);
+    int first = fem_compliance_party(model, pair->names[0]), second = fem_compliance_party(model, pair->names[1]);
     bool is_theirs = (first == a && second == b) || (first == b && second == a);
     if (is_theirs && pair->friction >= 0) friction = pair->friction;
   }

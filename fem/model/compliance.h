@@ -37,6 +37,8 @@
 // caller's (memory_free). `party_count`: the columns. STATUS_INPUT: `contact.pairs` names what is not there.
 Status fem_compliance_stiffness(const FemModel *model, double **stiffness, int *party_count);
 
+// The number of the body or obstacle of that name as a party; −1: there is none.
+int fem_compliance_party(const FemModel *model, const char *name);
 // The name of that party; "?" if there is none. Borrowed.
 const char *fem_compliance_party_name(const FemModel *model, int party);
 

@@ -290,7 +290,7 @@ static FemTable table_of(const FemLoadDef *def) {
 }
 
 static ExpressionValue factor_at(const FemLoadDef *def, double time) {
-  ExpressionValue factor = {1, 0};
+  ExpressionValue factor = {1, 0, 0};
   if (def->factor) factor = expression_eval(def->factor, time);
   if (def->table_count > 0) fem_table_eval(table_of(def), time, &factor.value, &factor.rate);
   return factor;

@@ -48,13 +48,21 @@ static void free_obstacle(FemObstacleDef *obstacle) {
   for (int c = 0; c < 3; c++) memory_free(obstacle->motion.formula[c]);
 }
 
+static void free_law(FemContactLawDef *def) {
+  memory_free(def->law.table);
+  memory_free(def->law.formula);
+}
+
 void fem_scene_destroy(FemSceneDef *scene) {
   for (int i = 0; i < scene->body_count; i++) free_body(&scene->bodies[i]);
   for (int i = 0; i < scene->obstacle_count; i++) free_obstacle(&scene->obstacles[i]);
   memory_free(scene->bodies);
   memory_free(scene->obstacles);
-  for (int i = 0; i < scene->contact.pair_count; i++)
+  for (int i = 0; i < scene->contact.pair_count; i++) {
     for (int k = 0; k < 2; k++) memory_free(scene->contact.pairs[i].names[k]);
+    free_law(&scene->contact.pairs[i].law);
+  }
+  free_law(&scene->contact.law);
   memory_free(scene->contact.pairs);
   memory_free(scene->contact.overlap);
   memory_free(scene->status_reference);

@@ -8,6 +8,7 @@
 
 #include "base/expression.h"
 #include "contact/def.h"
+#include "contact/pressure/law.h"
 #include "fem/material/material.h"
 #include "fem/mesh/mesh.h"
 #include "fem/sparse/solver.h"
@@ -149,18 +150,26 @@ typedef struct FemObstacleDef {
   FemScenePlace place;
 } FemObstacleDef;
 
+// A pressure law; linear, by a stiffness, where the scene gives none.
+typedef struct FemContactLawDef {
+  ContactLaw law;
+  FemScenePlace place;
+} FemContactLawDef;
+
 // What holds between two in place of what holds between any two.
 typedef struct FemContactPairDef {
-  char *names[2];   // of bodies or obstacles
-  double stiffness; // κ; 0: as without
-  double friction;  // μ; NAN: as without
+  char *names[2];       // of bodies or obstacles
+  double stiffness;     // κ; 0: as without
+  double friction;      // μ; NAN: as without
+  FemContactLawDef law; // linear: as without, or by `stiffness`
   FemScenePlace place;
 } FemContactPairDef;
 
 typedef struct FemContactDef {
   bool is_on;
   FemScenePlace place;
-  double stiffness; // κ; 0: chosen (fem/model/compliance.h, or the softest body's E)
+  double stiffness;     // κ; 0: chosen (fem/model/compliance.h, or the softest body's E)
+  FemContactLawDef law; // of the potential `field`, in place of κ
   ContactPotential potential;
   FemContactPairDef *pairs; //                                (pair_count)
   int pair_count;

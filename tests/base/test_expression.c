@@ -39,10 +39,11 @@ START_TEST(functions_have_their_values) {
 END_TEST
 
 // Central differences: error h²/6 f''' ≈ 1e-9 of these functions, and rounding 1e-16/h = 1e-11.
-START_TEST(the_rate_is_the_derivative) {
+START_TEST(rate_and_curve_are_the_derivatives) {
   static const char *const formulas[] = {
       "sin(3*t)*exp(-t)", "t^3/(1 + t^2)", "2^t",       "tan(t/2)",     "log(1 + t)", "sqrt(t + 2)*cos(t)",
       "smooth(t/3)",      "min(t, t^2)",   "max(1, t)", "abs(t - 5)*t", "t^t",        "-(t - 1)/(t + 1)",
+      "cos(t^2)",         "(t^2)^sin(t)",  "1/sqrt(t)",
   };
   Random random = random_seeded(7, 1);
   for (size_t f = 0; f < sizeof formulas / sizeof *formulas; f++)
@@ -51,6 +52,8 @@ START_TEST(the_rate_is_the_derivative) {
       if (fabs(t - 1) < 1e-3) continue; // kinks of min and max
       double difference = (at(formulas[f], t + h).value - at(formulas[f], t - h).value) / (2 * h);
       ck_assert_near(at(formulas[f], t).rate, difference, 1e-7 * (1 + fabs(difference)));
+      difference = (at(formulas[f], t + h).rate - at(formulas[f], t - h).rate) / (2 * h);
+      ck_assert_near(at(formulas[f], t).curve, difference, 1e-7 * (1 + fabs(difference)));
     }
 }
 END_TEST
@@ -59,6 +62,20 @@ START_TEST(a_constant_power_is_differentiable_at_zero) {
   ck_assert_double_eq(at("t^2", 0).rate, 0);
   ck_assert_double_eq(at("t^1", 0).rate, 1);
   ck_assert_double_eq(at("(t - 1)^3", 0).rate, 3);
+  ck_assert_double_eq(at("t^2", 0).curve, 2);
+  ck_assert_double_eq(at("t^1", 0).curve, 0);
+}
+END_TEST
+
+START_TEST(an_argument_may_have_another_name) {
+  Expression expression;
+  ck_assert_ok(expression_parse_of(&expression, "d", "2*d^3"));
+  ExpressionValue value = expression_eval(&expression, 2);
+  ck_assert_double_eq(value.value, 16);
+  ck_assert_double_eq(value.rate, 24);
+  ck_assert_double_eq(value.curve, 24);
+  ck_assert_int_eq(expression_parse_of(&expression, "d", "2*t"), STATUS_INPUT);
+  ck_assert_ptr_nonnull(strstr(status_message(), "expected d, pi"));
 }
 END_TEST
 
@@ -137,8 +154,9 @@ int main(void) {
   TCase *test_case = tcase_create("expression");
   tcase_add_test(test_case, precedence_is_that_of_mathematics);
   tcase_add_test(test_case, functions_have_their_values);
-  tcase_add_test(test_case, the_rate_is_the_derivative);
+  tcase_add_test(test_case, rate_and_curve_are_the_derivatives);
   tcase_add_test(test_case, a_constant_power_is_differentiable_at_zero);
+  tcase_add_test(test_case, an_argument_may_have_another_name);
   tcase_add_test(test_case, what_is_no_formula_is_refused_with_its_place);
   tcase_add_test(test_case, length_and_nesting_are_bounded);
   tcase_add_test(test_case, kinks_of_straight_arguments_are_foreseen);

@@ -16,6 +16,7 @@
 #include "fem/measure/thickness.h"
 #include "fem/model/compliance.h"
 #include "fem/model/division.h"
+#include "fem/model/laws.h"
 #include "fem/model/tolerance.h"
 #include "fem/run/check/choice.h"
 #include "fem/run/check/start.h"
@@ -201,6 +202,19 @@ static void print_effects(const FemSceneDef *scene) {
   putchar('\n');
 }
 
+static void print_laws(const FemContactDef *contact) {
+  char text[EXPRESSION_MAX_TEXT + 64];
+  if (!fem_laws_are_wanted(contact)) return;
+  contact_law_describe(&contact->law.law, text, sizeof text);
+  printf("              pressure law %s; the stiffness is that of friction and of linear pairs\n", text);
+  for (int i = 0; i < contact->pair_count; i++) {
+    const FemContactPairDef *pair = &contact->pairs[i];
+    if (pair->law.law.kind == CONTACT_LAW_LINEAR) continue;
+    contact_law_describe(&pair->law.law, text, sizeof text);
+    printf("              pressure law of '%s' and '%s' %s\n", pair->names[0], pair->names[1], text);
+  }
+}
+
 static void print_contact(const AppJob *job) {
   const FemContactDef *contact = &job->scene.contact;
   if (!contact->is_on) return;
@@ -212,6 +226,7 @@ static void print_contact(const AppJob *job) {
          contact_def_potential_name(contact->potential), range[0], most,
          contact_def_potential_unit(contact->potential), contact->stiffness > 0 ? "" : " (chosen)",
          app_job_overlap(job));
+  print_laws(contact);
   if (contact->smooth > 0)
     printf("              curved surfaces smoothed, their edges in %d parts\n", 1 << contact->smooth);
 }
@@ -299,6 +314,10 @@ static void record_contact(const AppJob *job, Record *record) {
   record_text(record, "stiffness_unit", contact_def_potential_unit(contact->potential));
   record_bool(record, "is_stiffness_chosen", !(contact->stiffness > 0));
   record_text(record, "overlap", app_job_overlap(job));
+  if (!fem_laws_are_wanted(contact)) return;
+  char law[EXPRESSION_MAX_TEXT + 64];
+  contact_law_describe(&contact->law.law, law, sizeof law);
+  record_text(record, "law", law);
 }
 
 static void record_range(Record *record, const char *name, const int range[2]) {

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "app/scene/keys/choices.h"
+#include "fem/model/laws.h"
 #include "fem/scene/scene.h"
 
 static const char *finish_contact(void *self, const char **key) {
@@ -18,6 +19,11 @@ static const char *finish_contact(void *self, const char **key) {
     *key = "viscosity";
     return "viscous contact builds on the potential field; remove 'potential' and 'stiffness', whose unit "
            "differs, or the viscosity";
+  }
+  if (fem_laws_are_wanted(contact)) {
+    *key = contact->law.law.kind == CONTACT_LAW_LINEAR ? "pairs" : "law";
+    return "only the potential field takes a pressure law; remove 'potential' and 'stiffness', whose unit "
+           "differs, or the law";
   }
   if (contact->smooth > 0) {
     *key = "smooth";
@@ -78,6 +84,47 @@ static const SceneKey rest_keys[] = {
 };
 static const SceneSection rest = {.help = "when bodies count as at rest", .keys = rest_keys};
 
+static const SceneKey power_keys[] = {
+    {"exponent", SCENE_NUMBER, AT(FemContactLawDef, law.exponent), .range = "[1, inf)", .required = "2",
+     .help = "n of p = P (d/D)ⁿ"},
+    {"pressure", SCENE_NUMBER, AT(FemContactLawDef, law.pressure), .unit = "Pa", .range = "(0, inf)",
+     .required = "1e6", .help = "P, the pressure at the depth D"},
+    {"depth", SCENE_NUMBER, AT(FemContactLawDef, law.depth), .unit = "m", .range = "(0, inf)",
+     .required = "1e-5", .help = "D"},
+    {0},
+};
+static const SceneSection power = {.help = "p = P (d/D)ⁿ", .keys = power_keys};
+
+static const SceneKey exponential_keys[] = {
+    {"pressure", SCENE_NUMBER, AT(FemContactLawDef, law.pressure), .unit = "Pa", .range = "(0, inf)",
+     .required = "1e6", .help = "P of p = P (exp(d/D) − 1)"},
+    {"depth", SCENE_NUMBER, AT(FemContactLawDef, law.depth), .unit = "m", .range = "(0, inf)",
+     .required = "1e-5", .help = "D: over this depth the pressure grows by e"},
+    {0},
+};
+static const SceneSection exponential = {.help = "p = P (exp(d/D) − 1)", .keys = exponential_keys};
+
+static const SceneKey law_keys[] = {
+    {"power", SCENE_SECTION, .section = &power, MARK(FemContactLawDef, law.kind, CONTACT_LAW_POWER),
+     .help = "p = P (d/D)ⁿ"},
+    {"exponential", SCENE_SECTION, .section = &exponential,
+     MARK(FemContactLawDef, law.kind, CONTACT_LAW_EXPONENTIAL), .help = "or p = P (exp(d/D) − 1)"},
+    {"table", SCENE_PROFILE, AT(FemContactLawDef, law.table), .argument = "d", .unit = "m, Pa",
+     .count_offset = offsetof(FemContactLawDef, law.table_count),
+     MARK(FemContactLawDef, law.kind, CONTACT_LAW_TABLE),
+     .help =
+         "or rows [d, p], the first [0, 0], p increasing, joined by a smooth curve that rises as they do, "
+         "straight beyond the last"},
+    {"formula", SCENE_FORMULA, AT(FemContactLawDef, law.formula), .argument = "d", .unit = "Pa",
+     MARK(FemContactLawDef, law.kind, CONTACT_LAW_FORMULA), .help = "or a formula of d [m]"},
+    {0},
+};
+static const SceneSection law = {.help = "a pressure law p(d) in place of a stiffness",
+                                 .keys = law_keys,
+                                 .one_of = "power exponential table formula",
+                                 .shorthand = "formula",
+                                 PLACE(FemContactLawDef, place)};
+
 static const SceneKey pair_keys[] = {
     {"bodies", SCENE_TWO, AT(FemContactPairDef, names), .required = "[block, ground]",
      .help = "two names, of bodies or a body and an obstacle; twice the same: a body with itself"},
@@ -85,12 +132,14 @@ static const SceneKey pair_keys[] = {
      .absent_help = "as between any two", .help = "κ between these two, as above"},
     {"friction", SCENE_NUMBER, AT(FemContactPairDef, friction), .range = "[0, inf)", .absent = NAN,
      .absent_help = "as between any two", .help = "μ between these two"},
+    {"law", SCENE_SECTION, AT(FemContactPairDef, law), .section = &law,
+     .absent_help = "as between any two; linear with a `stiffness`", .help = "p(d) between these two"},
     {0},
 };
 static const SceneSection pair = {.help = "values for two bodies",
                                   .size = sizeof(FemContactPairDef),
                                   .keys = pair_keys,
-                                  .some_of = "stiffness friction",
+                                  .some_of = "stiffness friction law",
                                   PLACE(FemContactPairDef, place)};
 
 static const SceneKey contact_keys[] = {
@@ -101,6 +150,10 @@ static const SceneKey contact_keys[] = {
      .help = "penalty stiffness κ; higher: less overlap, shorter steps (Pa/m with the potential `field`)"},
     {"potential", SCENE_CHOICE, AT(FemContactDef, potential), .fallback = "field",
      .choices = &app_scene_choices_potentials, .help = "how overlaps become pressure"},
+    {"law", SCENE_SECTION, AT(FemContactDef, law), .section = &law, .absent_help = "linear, by `stiffness`",
+     .help =
+         "p(d): the pressure between two flat surfaces that overlap by d in all, of two bodies and of a body "
+         "and an obstacle alike; a formula alone or a mapping; needs the potential `field`"},
     {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "clip",
      .choices = &app_scene_choices_overlaps,
      .help = "the model that computes the overlap volume of two tetrahedra: a name, or a file of yours, from "

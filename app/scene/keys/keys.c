@@ -132,9 +132,8 @@ static const char *type_text(SceneType type) {
   case SCENE_ROWS:
     return "rows [t, x, y, z] of four numbers, t increasing";
   case SCENE_PROFILE:
-    return "rows [t, value] of two numbers, t increasing";
   case SCENE_FORMULA:
-    return "a number or a formula of t, like 'sin(2*pi*t)'";
+    break; // by what they are a function of
   case SCENE_SECTION:
     return "a mapping {key: value}";
   case SCENE_LIST:
@@ -143,18 +142,30 @@ static const char *type_text(SceneType type) {
   return "";
 }
 
+static void append_type(const SceneKey *key, char *text, size_t size, size_t *used) {
+  const char *argument = app_scene_keys_argument(key);
+  if (key->type == SCENE_PROFILE)
+    text_append(text, size, used, "rows [%s, value] of two numbers, %s increasing", argument, argument);
+  else if (key->type == SCENE_FORMULA)
+    text_append(text, size, used, "a number or a formula of %s, like '%s'", argument,
+                key->argument ? "1e9*d" : "sin(2*pi*t)");
+  else
+    text_append(text, size, used, "%s", type_text(key->type));
+}
+
 void app_scene_keys_expect(const SceneKey *key, char *text, size_t size) {
   size_t used = 0;
-  text_append(text, size, &used, "%s", type_text(key->type));
+  append_type(key, text, size, &used);
   const char *name;
   for (int i = 0; key->choices && (name = app_scene_section_name(key->choices, i)); i++)
     text_append(text, size, &used, "%s%s", i ? ", " : "", name);
   if (key->choices && key->choices->accepts)
     text_append(text, size, &used, ", or %s", key->choices->accepts_help);
-  if (key->section && key->section->shorthand)
-    text_append(text, size, &used, " or %s (its '%s')",
-                type_text(app_scene_keys_find(key->section, key->section->shorthand)->type),
-                key->section->shorthand);
+  if (key->section && key->section->shorthand) {
+    text_append(text, size, &used, " or ");
+    append_type(app_scene_keys_find(key->section, key->section->shorthand), text, size, &used);
+    text_append(text, size, &used, " (its '%s')", key->section->shorthand);
+  }
   if (key->range) text_append(text, size, &used, " in %s", key->range);
   if (key->unit) text_append(text, size, &used, " [%s]", key->unit);
 }

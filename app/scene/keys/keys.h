@@ -11,6 +11,11 @@
 #include "app/scene/keys/section.h"
 #include "base/text.h"
 
+// What a value is a function of.
+static inline const char *app_scene_keys_argument(const SceneKey *key) {
+  return key->argument ? key->argument : "t";
+}
+
 // How many numbers a row of ROWS or PROFILE has.
 int app_scene_keys_row_width(const SceneKey *key);
 

@@ -23,8 +23,8 @@ typedef enum SceneType {
   SCENE_COUNTS,    // int[3]; one number stands for three
   SCENE_AXES,      // bool[3]: some of x, y, z
   SCENE_ROWS,      // double *, owned, (count, 4): rows [t, x, y, z], t increasing
-  SCENE_PROFILE,   // double *, owned, (count, 2): rows [t, value], t increasing
-  SCENE_FORMULA,   // Expression *, owned: a function of t; a number is one, too
+  SCENE_PROFILE,   // double *, owned, (count, 2): rows [t, value], t increasing, or of another `argument`
+  SCENE_FORMULA,   // Expression *, owned: a function of t, or of another `argument`; a number is one, too
   SCENE_SECTION,   // keys of its own; their offsets count from the key's
   SCENE_LIST,      // an array of structs, owned, (count); each a section
 } SceneType;
@@ -73,6 +73,7 @@ typedef struct SceneKey {
   const char *absent_help;     // what holds without the key, where no default says it
   const SceneChoices *choices; // of NAME and CHOICE
   const SceneSection *section; // of SECTION and LIST
+  const char *argument;        // of PROFILE and FORMULA: what it is a function of; NULL: t
   size_t count_offset;         // of ROWS, PROFILE and LIST: an int in the same struct
   SceneMark mark;
   const char *needs;    // keys of the section that must stand beside this one, separated by spaces

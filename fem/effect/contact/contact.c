@@ -13,6 +13,7 @@
 #include "fem/effect/contact/sink.h"
 #include "fem/effect/effect.h"
 #include "fem/model/compliance.h"
+#include "fem/model/laws.h"
 #include "fem/scene/drive.h"
 #include "fem/scene/obstacle.h"
 #include "overlap/source.h"
@@ -131,8 +132,14 @@ static Status build(Contact *contact, Contact *old) {
   if (!contact->bodies || !contact->shapes || !contact->solids) return status_no_memory("the contact bodies");
   list_sides(contact);
   double *stiffness;
+  const ContactLaw **laws;
   int party_count;
-  TRY(fem_compliance_stiffness(model, &stiffness, &party_count));
+  TRY(fem_laws_create(model, &laws));
+  Status status = fem_compliance_stiffness(model, &stiffness, &party_count);
+  if (status) {
+    memory_free(laws);
+    return status;
+  }
   ContactSystemDef system = {.vertex_count = model->vertex_count,
                              .rest = model->rest,
                              .tets = (const int(*)[4])model->tets,
@@ -147,11 +154,13 @@ static Status build(Contact *contact, Contact *old) {
                              .potential = def->potential,
                              .stiffness = fem_model_contact_stiffness(model),
                              .pair_stiffness = stiffness,
+                             .pair_laws = laws,
                              .margin = def->margin,
                              .use_full_hessian = def->use_full_hessian,
                              .model = &contact->overlap};
-  Status status = contact_system_create(&contact->system, &system);
+  status = contact_system_create(&contact->system, &system);
   memory_free(stiffness);
+  memory_free(laws);
   return status;
 }
 

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pressure laws of the potential `field`: the laws themselves, energies, forces and stiffness of what presses
+// by them, flat surfaces at the pressure that the law gives for their overlap.
+#include "pressing.h"
+
+#include <string.h>
+
+#include "contact/pressure/field.h"
+
+static double TABLE[] = {0, 0, 0.02, 10, 0.05, 40, 0.1, 150, 0.4, 1500};
+
+enum { LINE, SQUARE, HERTZ, EXPONENTIAL, ROWS, FORMULA, LAWS };
+
+static ContactLaw law_of(int kind, Expression *formula) {
+  switch (kind) {
+  case LINE:
+    return (ContactLaw){.kind = CONTACT_LAW_POWER, .exponent = 1, .pressure = 100, .depth = 0.05};
+  case SQUARE:
+    return (ContactLaw){.kind = CONTACT_LAW_POWER, .exponent = 2, .pressure = 100, .depth = 0.05};
+  case HERTZ:
+    return (ContactLaw){.kind = CONTACT_LAW_POWER, .exponent = 1.5, .pressure = 100, .depth = 0.05};
+  case EXPONENTIAL:
+    return (ContactLaw){.kind = CONTACT_LAW_EXPONENTIAL, .pressure = 100, .depth = 0.2};
+  case ROWS:
+    return (ContactLaw){.kind = CONTACT_LAW_TABLE, .table = TABLE, .table_count = 5};
+  default:
+    ck_assert_ok(expression_parse_of(formula, "d", "1e3*d + 2e4*d^2"));
+    return (ContactLaw){.kind = CONTACT_LAW_FORMULA, .formula = formula};
+  }
+}
+
+// ---- The laws.
+
+START_TEST(slope_and_curve_are_the_derivatives) {
+  Expression formula;
+  ContactLaw law = law_of(_i, &formula);
+  for (int k = 1; k < 40; k++) {
+    double d = 0.0123 * k, h = 1e-6;
+    ContactLawValue at = contact_law_at(&law, d), above = contact_law_at(&law, d + h),
+                    below = contact_law_at(&law, d - h);
+    ck_assert_near(at.slope, (above.pressure - below.pressure) / (2 * h), 1e-7 * at.slope + 1e-6);
+    ck_assert_near(at.curve, (above.slope - below.slope) / (2 * h), 1e-6 * fabs(at.curve) + 1e-3);
+  }
+}
+END_TEST
+
+START_TEST(a_table_goes_through_its_rows_and_never_falls) {
+  Expression formula;
+  ContactLaw law = law_of(ROWS, &formula);
+  double last = 0;
+  for (int k = 0; k < 5; k++)
+    ck_assert_near(contact_law_at(&law, TABLE[2 * k]).pressure, TABLE[2 * k + 1], 1e-12 * TABLE[9]);
+  for (int k = 0; k <= 1000; k++) {
+    ContactLawValue value = contact_law_at(&law, 0.0007 * k);
+    ck_assert(value.pressure >= last && value.slope > 0);
+    last = value.pressure;
+  }
+  ContactLawValue beyond = contact_law_at(&law, 0.6); // straight, by the last two rows
+  ck_assert_near(beyond.pressure, 1500 + 0.2 * 1350 / 0.3, 1e-9);
+}
+END_TEST
+
+static void refuse(const ContactLaw *law, const char *expected) {
+  char why[256] = "";
+  ck_assert(!contact_law_check(law, 1, 1e6, why, sizeof why));
+  ck_assert_msg(strstr(why, expected), "%s", why);
+}
+
+static void refuse_formula(const char *text, const char *expected) {
+  Expression formula;
+  ck_assert_ok(expression_parse_of(&formula, "d", text));
+  refuse(&(ContactLaw){.kind = CONTACT_LAW_FORMULA, .formula = &formula}, expected);
+}
+
+START_TEST(laws_that_make_no_sense_are_refused) {
+  refuse_formula("1e3*d + 5", "it must be 0");
+  refuse_formula("1e3*d - 1e4*d^2", "falls");
+  refuse_formula("1e3*d/sqrt(0.1 - d)", "finite");
+  refuse_formula("log(d)", "it must be 0");
+  refuse_formula("0*d", "is 0 up to");
+  double falling[] = {0, 0, 0.1, 10, 0.2, 9}, raised[] = {0, 1, 0.1, 10}, single[] = {0, 0};
+  refuse(&(ContactLaw){.kind = CONTACT_LAW_TABLE, .table = falling, .table_count = 3}, "row 2");
+  refuse(&(ContactLaw){.kind = CONTACT_LAW_TABLE, .table = raised, .table_count = 2}, "[0, 0]");
+  refuse(&(ContactLaw){.kind = CONTACT_LAW_TABLE, .table = single, .table_count = 1}, "another");
+  for (int kind = 0; kind < LAWS; kind++) {
+    Expression formula;
+    char why[256] = "";
+    ContactLaw law = law_of(kind, &formula);
+    ck_assert_msg(contact_law_check(&law, 1, 1e6, why, sizeof why), "%s", why);
+  }
+}
+END_TEST
+
+// ---- Derivatives.
+
+// What the rules that integrate a law leave, over the size of what is compared. Between bodies they are exact
+// for p of second degree, else no better than p is even in an overlap of a third of an element, as here.
+// Against a plane they are exact for what is a polynomial between two rows, or a power.
+static double gradient_error(int kind, int law) {
+  bool is_exact = law == LINE || law == SQUARE || law == FORMULA;
+  if (kind <= ON_MESH) return is_exact ? 1e-8 : 5e-3;
+  return law == LINE || kind == ON_PLANE ? 1e-8 : 5e-4;
+}
+
+static double stiffness_error(int kind, int law) {
+  bool is_exact = law == LINE || law == SQUARE || law == FORMULA;
+  if (kind <= ON_MESH) return is_exact ? 1e-6 : law == EXPONENTIAL ? 0.02 : law == HERTZ ? 0.2 : 0.5;
+  return law == LINE || kind == ON_PLANE ? 1e-6 : 0.1;
+}
+
+START_TEST(forces_are_minus_the_gradient_of_the_energy) {
+  for (int kind = 0; kind < KINDS; kind++) {
+    Expression formula;
+    ContactLaw law = law_of(_i, &formula);
+    Scene scene;
+    press_on(&scene, kind);
+    scene.law = &law;
+    start(&scene, "clip", true);
+    int n = 3 * scene.blocks.vertex_count;
+    double *x = blocks_copy(&scene.blocks), *force = forces_at(&scene, scene.blocks.x);
+    double size = sqrt(product_dot(force, force, n));
+    ck_assert(size > 0);
+    double worst = 0;
+    for (uint64_t k = 0; k < 10; k++) {
+      double *d = random_motion(&scene, k, true), length = sqrt(product_dot(d, d, n));
+      worst = suite_larger(worst, fabs(slope_along(&scene, d, 1e-5, x) + product_dot(force, d, n)) /
+                                      (size * length));
+      free(d);
+    }
+    ck_assert_double_le(worst, gradient_error(kind, _i));
+    free(x), free(force), destroy(&scene);
+  }
+}
+END_TEST
+
+START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
+  for (int kind = 0; kind < KINDS; kind++) {
+    Expression formula;
+    ContactLaw law = law_of(_i, &formula);
+    Scene scene;
+    press_on(&scene, kind);
+    scene.law = &law;
+    start(&scene, "clip", true);
+    int n = 3 * scene.blocks.vertex_count;
+    double *x = blocks_copy(&scene.blocks), h = 1e-6, worst = 0;
+    for (uint64_t k = 0; k < 5; k++) {
+      double *d = random_motion(&scene, k, false);
+      step_to(&scene, h, d, x);
+      double *above = forces_at(&scene, x);
+      step_to(&scene, -h, d, x);
+      double *below = forces_at(&scene, x);
+      Product product = product_of(d, scene.blocks.vertex_count);
+      ContactStiffnessSink sink = product_sink(&product);
+      ck_assert_ok(contact_system_stiffness(scene.system, 0, scene.blocks.x, &sink));
+      double size = sqrt(product_dot(product.y, product.y, n)), square = 0;
+      for (int i = 0; i < n; i++) {
+        int body = i / 3 < scene.blocks.bodies[0].vertex_end ? 0 : 1;
+        if (scene.blocks.bodies[body].is_obstacle) continue;
+        double difference = (above[i] - below[i]) / (2 * h) + product.y[i];
+        square += difference * difference;
+      }
+      worst = suite_larger(worst, sqrt(square) / size);
+      free(d), free(above), free(below), free(product.y);
+    }
+    ck_assert_double_le(worst, stiffness_error(kind, _i));
+    free(x), destroy(&scene);
+  }
+}
+END_TEST
+
+// A Taylor series of the energy along a motion, with force and stiffness: what is left is of third order.
+START_TEST(energy_force_and_stiffness_are_a_taylor_series) {
+  int kind = _i ? ON_PLANE : ON_BODY;
+  Expression formula;
+  ContactLaw law = law_of(FORMULA, &formula);
+  Scene scene;
+  press_on(&scene, kind);
+  scene.law = &law;
+  start(&scene, "clip", true);
+  int n = 3 * scene.blocks.vertex_count;
+  double *x = blocks_copy(&scene.blocks), *d = random_motion(&scene, 3, true), left[2];
+  double *force = forces_at(&scene, scene.blocks.x), energy = energy_at(&scene, scene.blocks.x);
+  Product product = product_of(d, scene.blocks.vertex_count);
+  ContactStiffnessSink sink = product_sink(&product);
+  ck_assert_ok(contact_system_stiffness(scene.system, 0, scene.blocks.x, &sink));
+  for (int k = 0; k < 2; k++) {
+    double h = 4e-3 / (1 + k);
+    step_to(&scene, h, d, x);
+    left[k] = energy_at(&scene, x) - energy + h * product_dot(force, d, n) -
+              h * h / 2 * product_dot(product.y, d, n);
+  }
+  ck_assert_double_gt(fabs(left[0] / left[1]), 6); // 8 but for terms of fourth order
+  free(x), free(d), free(force), free(product.y), destroy(&scene);
+}
+END_TEST
+
+START_TEST(every_pair_balances) {
+  Expression formula;
+  ContactLaw law = law_of(_i, &formula);
+  Scene scene;
+  press_on(&scene, ON_BODY);
+  scene.law = &law;
+  start(&scene, _i == ROWS ? "tpn-scene" : "clip", true);
+  energy_at(&scene, scene.blocks.x);
+  const ContactEvaluation *evaluation = contact_system_evaluation(scene.system);
+  const ContactLayout *layout = contact_system_layout(scene.system);
+  double worst = 0, largest = 0;
+  for (int k = 0; k < evaluation->pair_count; k++) {
+    Vec3 sum = {0, 0, 0}, torque = {0, 0, 0};
+    for (int v = 0; v < 8; v++) {
+      int vertex = contact_layout_vertices(layout, evaluation->pairs[k].cells[v / 4])[v % 4];
+      Vec3 force = vec3_at(evaluation->pair_forces + 24 * k + 3 * v);
+      sum = vec3_add(sum, force);
+      torque = vec3_add(torque, vec3_cross(vec3_at(scene.blocks.x + 3 * vertex), force));
+      largest = suite_larger(largest, vec3_length(force));
+    }
+    worst = suite_larger(worst, suite_larger(vec3_length(sum), vec3_length(torque)));
+  }
+  ck_assert_int_gt(evaluation->pair_count, 50);
+  ck_assert_double_gt(largest, 0);
+  ck_assert_double_le(worst, 1e-13 * largest);
+  destroy(&scene);
+}
+END_TEST
+
+// ---- Flat surfaces.
+
+// The four sides of two blocks that stand on each other, bits 0 … 3.
+static unsigned char *mark_sides(const Scene *scene, double width) {
+  unsigned char *inner = calloc((size_t)scene->blocks.vertex_count, 1);
+  ck_assert_ptr_nonnull(inner);
+  for (int v = 0; v < scene->blocks.vertex_count; v++)
+    for (int c = 0; c < 2; c++) {
+      double x = scene->blocks.x[3 * v + c];
+      if (fabs(x) < 1e-9) inner[v] |= (unsigned char)(1 << 2 * c);
+      if (fabs(x - width) < 1e-9) inner[v] |= (unsigned char)(2 << 2 * c);
+    }
+  return inner;
+}
+
+// The pressure of a block of 4 × 4 that overlaps by `depth` with a block of another mesh or a floor; `model`
+// NULL: with the floor. `area`: as contact tells it.
+static double flat_pressure(const ContactLaw *law, double depth, const char *model, double *area) {
+  Scene scene = {.law = law};
+  int count;
+  if (model)
+    blocks_add(&scene.blocks, &(BlockDef){.corner = {0, 0, -2}, .cell = {1, 1, 1}, .cells = {4, 4, 2}});
+  blocks_add(&scene.blocks,
+             &(BlockDef){.corner = {0, 0, -depth}, .cell = {0.8, 0.8, 0.7}, .cells = {5, 5, 3}});
+  scene.shape_count = model ? 0 : 1;
+  scene.shape = (ContactShape){.name = "floor", .normal = {0, 0, 1}};
+  unsigned char *inner = mark_sides(&scene, 4);
+  scene.inner = inner;
+  start(&scene, model ? model : "clip", true);
+  double *force = forces_at(&scene, scene.blocks.x), total = 0;
+  const ContactBody *upper = &scene.blocks.bodies[scene.blocks.body_count - 1];
+  for (int v = upper->vertex_begin; v < upper->vertex_end; v++) total += force[3 * v + 2];
+  *area = contact_system_interfaces(scene.system, &count)[0].area;
+  free(force), free(inner), destroy(&scene);
+  return total / 16;
+}
+
+START_TEST(flat_surfaces_press_with_the_law_s_pressure) {
+  static const double DEPTHS[] = {0.01, 0.04, 0.1};
+  for (int k = 0; k < 3; k++) {
+    Expression formula;
+    ContactLaw law = law_of(_i, &formula);
+    double area, expected = contact_law_at(&law, DEPTHS[k]).pressure;
+    bool is_even = _i != HERTZ && _i != ROWS; // else two points of an overlap are off by up to 2 %
+    double bound = is_even ? 1e-4 : 0.02;
+    ck_assert_near(flat_pressure(&law, DEPTHS[k], "clip", &area) / expected, 1, bound);
+    ck_assert_near(area / 16, 1, 1e-9);
+    ck_assert_near(flat_pressure(&law, DEPTHS[k], "exact", &area) / expected, 1, bound);
+    ck_assert_near(flat_pressure(&law, DEPTHS[k], NULL, &area) / expected, 1, 1e-6);
+    ck_assert_near(area / 16, 1, 0.03); // cells that a plane cuts are not slabs
+  }
+}
+END_TEST
+
+// Lengths in another unit, pressures alike: energies are lengths cubed.
+START_TEST(the_unit_of_length_is_of_no_account) {
+  double area, unit = 1e-3;
+  ContactLaw large = {.kind = CONTACT_LAW_POWER, .exponent = 2.5, .pressure = 7, .depth = 0.02},
+             small = large;
+  ContactLawValue at = contact_law_at(&large, 0.03);
+  small.depth *= unit;
+  ContactLawValue scaled = contact_law_at(&small, 0.03 * unit);
+  ck_assert_near(scaled.pressure / at.pressure, 1, 1e-13);
+  ck_assert_near(scaled.slope * unit / at.slope, 1, 1e-13);
+  ck_assert_near(flat_pressure(&large, 0.03, "clip", &area) / at.pressure, 1, 5e-3);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("law");
+  tcase_add_loop_test(tests, slope_and_curve_are_the_derivatives, 0, LAWS);
+  tcase_add_test(tests, a_table_goes_through_its_rows_and_never_falls);
+  tcase_add_test(tests, laws_that_make_no_sense_are_refused);
+  tcase_add_loop_test(tests, forces_are_minus_the_gradient_of_the_energy, 0, LAWS);
+  tcase_add_loop_test(tests, stiffness_is_minus_the_derivative_of_the_forces, 0, LAWS);
+  tcase_add_loop_test(tests, energy_force_and_stiffness_are_a_taylor_series, 0, 2);
+  tcase_add_loop_test(tests, every_pair_balances, 0, LAWS);
+  tcase_add_loop_test(tests, flat_surfaces_press_with_the_law_s_pressure, 0, LAWS);
+  tcase_add_test(tests, the_unit_of_length_is_of_no_account);
+  return suite_run("law", tests, 60);
+}

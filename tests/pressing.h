@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scenes of the potential `field` for tests: two irregular blocks pressed into each other, or one into an
+// obstacle, with differences of energies and forces.
+#ifndef TETLAP_TESTS_PRESSING_H
+#define TETLAP_TESTS_PRESSING_H
+
+#include "blocks.h"
+#include "product.h"
+
+#include "base/vec3.h"
+#include "contact/pressure/law.h"
+#include "contact/shape/convex.h"
+
+static const double STIFFNESS = 1000;
+
+typedef struct Scene {
+  Blocks blocks;
+  double *rest, *still;
+  OverlapModel model;
+  ContactShape shape; // its kind's point of view; only where shape_count is 1
+  ContactConvex solid;
+  int shape_count;
+  const unsigned char *inner; // borrowed
+  const ContactLaw *law;      // of all; borrowed, NULL: linear
+  ContactSystem *system;
+} Scene;
+
+static inline void start(Scene *scene, const char *model, bool is_full) {
+  scene->rest = scene->rest ? scene->rest : blocks_copy(&scene->blocks);
+  scene->still = calloc(3 * (size_t)scene->blocks.vertex_count, sizeof(double));
+  ck_assert_ptr_nonnull(scene->still);
+  ck_assert_ok(overlap_model_create(&scene->model, model));
+  ContactSystemDef def = blocks_def(&scene->blocks, scene->rest, &scene->model);
+  def.potential = CONTACT_POTENTIAL_FIELD;
+  def.stiffness = STIFFNESS;
+  def.use_full_hessian = is_full;
+  def.shapes = &scene->shape, def.shape_count = scene->shape_count;
+  def.inner = scene->inner;
+  const ContactLaw *laws[BLOCKS_MAX * (BLOCKS_MAX + 1)];
+  for (int k = 0; k < BLOCKS_MAX * (BLOCKS_MAX + 1); k++) laws[k] = scene->law;
+  def.pair_laws = laws;
+  ck_assert_ok(contact_system_create(&scene->system, &def));
+  ck_assert_ok(contact_system_update(scene->system, 0, scene->blocks.x, scene->still, 0.01, NULL));
+}
+
+static inline void destroy(Scene *scene) {
+  contact_system_destroy(scene->system);
+  overlap_model_destroy(&scene->model);
+  blocks_destroy(&scene->blocks);
+  free(scene->rest), free(scene->still);
+  *scene = (Scene){.system = NULL};
+}
+
+static inline double energy_at(const Scene *scene, const double *x) {
+  double energy;
+  ck_assert_ok(contact_system_eval(scene->system, 0, x, &energy, NULL));
+  return energy;
+}
+
+static inline void move(const Scene *scene) {
+  ck_assert_ok(contact_system_update(scene->system, 0, scene->blocks.x, scene->still, 0.01, NULL));
+}
+
+// Owned by the caller (free).
+static inline double *forces_at(const Scene *scene, const double *x) {
+  double energy, *force = calloc(3 * (size_t)scene->blocks.vertex_count, sizeof(double));
+  ck_assert_ptr_nonnull(force);
+  ck_assert_ok(contact_system_eval(scene->system, 0, x, &energy, force));
+  return force;
+}
+
+// Two irregular blocks, one pressed into the other, both stretched and sheared from where they rest; the
+// lower one is one cell thick.
+static inline void press_blocks(Scene *scene, bool is_obstacle_below) {
+  blocks_add(
+      &scene->blocks,
+      &(BlockDef){.cell = {1, 1, 1.6}, .cells = {3, 3, 1}, .jitter = 0.12, .is_obstacle = is_obstacle_below});
+  blocks_add(
+      &scene->blocks,
+      &(BlockDef){.corner = {0.63, 0.41, 1.3}, .cell = {0.83, 0.9, 0.8}, .cells = {2, 2, 3}, .jitter = 0.15});
+  scene->rest = blocks_copy(&scene->blocks);
+  for (int v = scene->blocks.bodies[1].vertex_begin; v < scene->blocks.bodies[1].vertex_end; v++) {
+    double *x = scene->blocks.x + 3 * v;
+    x[0] += 0.08 * sin(x[1]), x[1] += 0.1 * x[2] - 0.13, x[2] += 0.05 * x[0];
+  }
+}
+
+enum { ON_BODY, ON_MESH, ON_PLANE, ON_BALL, ON_BOX, ON_PRISM, KINDS };
+
+static inline void press_on(Scene *scene, int kind) {
+  *scene = (Scene){.system = NULL};
+  if (kind <= ON_MESH) {
+    press_blocks(scene, kind == ON_MESH);
+    return;
+  }
+  blocks_add(&scene->blocks, &(BlockDef){.corner = {-0.7, -0.8, -0.22},
+                                         .cell = {0.5, 0.6, 0.55},
+                                         .cells = {3, 3, 2},
+                                         .jitter = 0.15});
+  scene->shape_count = 1;
+  scene->shape = (ContactShape){.name = "obstacle",
+                                .normal = {0, 0, 1},
+                                .point = {0.1, 0.2, 0.01},
+                                .axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  if (kind == ON_BALL)
+    scene->shape.kind = CONTACT_SHAPE_BALL, scene->shape.radius = 0.83, scene->shape.point[2] = -0.6;
+  if (kind == ON_BOX || kind == ON_PRISM) {
+    scene->shape.kind = CONTACT_SHAPE_CONVEX, scene->shape.convex = &scene->solid;
+    scene->shape.point[2] = -0.45;
+    if (kind == ON_BOX) contact_convex_make_box(&scene->solid, (double[]){0.4, 0.33, 0.47});
+    if (kind == ON_PRISM) contact_convex_make_prism(&scene->solid, 0.5, 0.48, 16);
+  }
+}
+
+static inline double *random_motion(const Scene *scene, uint64_t stream, bool obstacles_move) {
+  Random random = random_seeded(21, stream);
+  double *d = calloc(3 * (size_t)scene->blocks.vertex_count, sizeof(double));
+  ck_assert_ptr_nonnull(d);
+  for (int b = 0; b < scene->blocks.body_count; b++)
+    for (int k = 3 * scene->blocks.bodies[b].vertex_begin; k < 3 * scene->blocks.bodies[b].vertex_end; k++)
+      d[k] = scene->blocks.bodies[b].is_obstacle && !obstacles_move ? 0 : random_between(&random, -1, 1);
+  return d;
+}
+
+static inline void step_to(const Scene *scene, double h, const double *d, double *x) {
+  for (int k = 0; k < 3 * scene->blocks.vertex_count; k++) x[k] = scene->blocks.x[k] + h * d[k];
+}
+
+// Differences over ± h and ± 2 h, such that the error is of fourth order.
+static inline double slope_along(const Scene *scene, const double *d, double h, double *x) {
+  double energy[4], steps[4] = {-2, -1, 1, 2};
+  for (int k = 0; k < 4; k++) {
+    step_to(scene, steps[k] * h, d, x);
+    energy[k] = energy_at(scene, x);
+  }
+  return (8 * (energy[2] - energy[1]) - (energy[3] - energy[0])) / (12 * h);
+}
+
+#endif
