@@ -209,9 +209,9 @@ static Status read_increasing_rows(const SceneKey *key, const SceneNode *node, v
     app_scene_tree_path(node, path, sizeof path);
     bool is_flat = node->first->kind == SCENE_NODE_NUMBER;
     const SceneNode *row = app_scene_tree_at(node, is_flat ? width * i : i);
-    const char *argument = app_scene_keys_argument(key);
-    return app_scene_tree_fail(row, "%s: %s = %g of row %d does not follow %g; %s must increase", path,
-                               argument, rows[width * i], i, rows[width * (i - 1)], argument);
+    const char *word = key->argument ? "depth" : "time";
+    return app_scene_tree_fail(row, "%s: the %s %g of row %d does not follow %g; %ss must increase", path,
+                               word, rows[width * i], i, rows[width * (i - 1)], word);
   }
   return STATUS_OK;
 }
