@@ -33,47 +33,8 @@
 #ifndef TETLAP_CONTACT_FIELD_H
 #define TETLAP_CONTACT_FIELD_H
 
-#include "base/vec3.h"
+#include "contact/pressure/field_pair.h"
 #include "contact/search/layout.h"
-
-// A pair with V > 0, for laws that build on it. Side 0 is cells[0] of the pair. Of a shape (side 1) the slope
-// is minus its outward normal, the depth that of the mean, both as the force sees them; φ_A and g_A are 0
-// there, and x̄ and the weights of side 0 are those of the force: what is left of a shape's force is its
-// resultant.
-typedef struct ContactFieldPair {
-  const struct ContactLaw *law; // NULL: linear; borrowed
-  double energy;                // U_ij [J]
-  double volume;                // V [m³]
-  double weighed[2];    // s_i V, s_j V: how much of A's and B's material at rest is in P; of a shape 0 [m³]
-  double centroid[3];   // x̄ [m]
-  double force[3];      // F_ij on side 0 [N]; N = |F_ij|
-  double depths[2];     // φ_A(x̄), φ_B(x̄): of this point below the surface of side 0, 1 [m]
-  double slopes[2][3];  // g_A, g_B
-  double weights[2][4]; // λ(x̄) of the vertices of the sides' tetrahedra (contact_layout_vertices)
-} ContactFieldPair;
-
-// The force of the pair over that which a linear law of 1 Pa/m would give.
-static inline double contact_field_secant(const ContactFieldPair *field) {
-  Vec3 push = vec3_sub(vec3_scale(field->weighed[0], vec3_at(field->slopes[1])),
-                       vec3_scale(field->weighed[1], vec3_at(field->slopes[0])));
-  double length = vec3_length(push);
-  return length > 0 ? vec3_length(vec3_at(field->force)) / length : 0;
-}
-
-// The area that a pair covers [m²], V F / (2 U): of a slab of thickness D over an area V = ∫ D dA,
-// F = 2 c ∫ D dA, U = c ∫ D² dA (against a shape F = c ∫ D dA, U = ½ c ∫ D² dA), so that it is
-// (∫ D dA)² / ∫ D² dA. Exact where D is even, also in squeezed cells; ¾ of the area where D falls to 0
-// linearly. With a law F and U are those of the linear one.
-static inline double contact_field_area(const ContactFieldPair *field) {
-  if (field->law) {
-    Vec3 push = vec3_sub(vec3_scale(field->weighed[0], vec3_at(field->slopes[1])),
-                         vec3_scale(field->weighed[1], vec3_at(field->slopes[0])));
-    double moment = field->weighed[0] * field->depths[1] + field->weighed[1] * field->depths[0];
-    return moment > 0 ? 0.5 * field->volume * vec3_length(push) / moment : 0;
-  }
-  double force = vec3_length(vec3_at(field->force));
-  return field->energy > 0 ? 0.5 * field->volume * force / field->energy : 0;
-}
 
 // Of a pair of cells with these coordinates (2, 4, 3), V > 0 and x̄. `forces` (2, 4, 3): on the
 // vertices of the two tetrahedra [N].

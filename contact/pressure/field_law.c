@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/pressure/field_law.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -82,15 +83,12 @@ typedef struct Point {
   double lanes[8]; // of the cells
 } Point;
 
-// A variance below this share of the squared depth is rounding, and changes nothing.
-static const double LEAST_SPREAD = 1e-20;
-
 // `lanes` of x̄, φ(x̄) = `depth`. Returns how many points there are.
 static int find_points(const Moments *moments, const double lanes[8], double depth, Point points[2]) {
   double sigma = sqrt(fmax(moments->square, 0));
   points[0] = (Point){.share = 1, .depth = depth};
   memcpy(points[0].lanes, lanes, sizeof points[0].lanes);
-  if (!(moments->square > LEAST_SPREAD * depth * depth)) return 1;
+  if (!(sigma > DBL_EPSILON * depth)) return 1;
   double skew = moments->cube / (sigma * sigma * sigma), root = sqrt(4 + skew * skew);
   for (int k = 0; k < 2; k++) {
     double sign = k == 0 ? 1 : -1, reach = 0.5 * (skew + sign * root);
@@ -141,20 +139,21 @@ void contact_field_law_press(const ContactLayout *layout, const ContactPair *pai
 // ---- What second derivatives are made of.
 
 // Rules with positive weights: on a triangle exact to fourth degree (Dunavant 1985), on a tetrahedron to
-// second.
-enum { TRIANGLE_POINTS = 6, TET_POINTS = 4 };
-static const double TRIANGLE_A[2] = {0.445948490915965, 0.091576213509771};
-static const double TRIANGLE_WEIGHT[2] = {0.223381589678011, 0.109951743655322};
-static const double TET_A = 0.1381966011250105;
-
-static void triangle_point(int k, double shares[3]) {
-  double a = TRIANGLE_A[k / 3];
-  for (int v = 0; v < 3; v++) shares[v] = v == k % 3 ? 1 - 2 * a : a;
-}
-
-static void tet_point(int k, double shares[4]) {
-  for (int v = 0; v < 4; v++) shares[v] = v == k ? 1 - 3 * TET_A : TET_A;
-}
+// second, with equal weights.
+static const double TRIANGLE[6][3] = {{0.108103018168070, 0.445948490915965, 0.445948490915965},
+                                      {0.445948490915965, 0.108103018168070, 0.445948490915965},
+                                      {0.445948490915965, 0.445948490915965, 0.108103018168070},
+                                      {0.816847572980458, 0.091576213509771, 0.091576213509771},
+                                      {0.091576213509771, 0.816847572980458, 0.091576213509771},
+                                      {0.091576213509771, 0.091576213509771, 0.816847572980458}};
+static const double TRIANGLE_WEIGHTS[6] = {0.223381589678011, 0.223381589678011, 0.223381589678011,
+                                           0.109951743655322, 0.109951743655322, 0.109951743655322};
+static const double TET[4][4] = {
+    {0.5854101966249685, 0.1381966011250105, 0.1381966011250105, 0.1381966011250105},
+    {0.1381966011250105, 0.5854101966249685, 0.1381966011250105, 0.1381966011250105},
+    {0.1381966011250105, 0.1381966011250105, 0.5854101966249685, 0.1381966011250105},
+    {0.1381966011250105, 0.1381966011250105, 0.1381966011250105, 0.5854101966249685}};
+enum { TRIANGLE_COUNT = sizeof TRIANGLE / sizeof *TRIANGLE, TET_COUNT = sizeof TET / sizeof *TET };
 
 // A point of P: λ of the tetrahedra's vertices and the depths in both sides.
 typedef struct Spot {
@@ -181,12 +180,10 @@ static void add_squares(double squares[8][8], double weight, const double lanes[
 static void add_face(ContactClipped *clipped, const ContactLaw *law, const ContactSide sides[2],
                      const ContactTriangle *triangle, ContactFieldLawSums *sums) {
   const int vertices[3] = {triangle->vertex[0], triangle->vertex[1], triangle->vertex[2]};
-  for (int k = 0; k < TRIANGLE_POINTS; k++) {
-    double shares[3];
-    triangle_point(k, shares);
-    Spot spot = spot_between(clipped, sides, 3, vertices, shares);
+  for (int k = 0; k < TRIANGLE_COUNT; k++) {
+    Spot spot = spot_between(clipped, sides, 3, vertices, TRIANGLE[k]);
     double slope = contact_law_at(law, spot.depths[triangle->face / 4]).slope;
-    add_squares(sums->face[triangle->face], triangle->share * TRIANGLE_WEIGHT[k / 3] * slope, spot.lanes);
+    add_squares(sums->face[triangle->face], triangle->share * TRIANGLE_WEIGHTS[k] * slope, spot.lanes);
   }
 }
 
@@ -200,14 +197,11 @@ static double span_of(const ContactClipped *clipped, const ContactSide *side, in
   return high - low;
 }
 
-// Spans below this share of the depth are rounding.
-static const double LEAST_SPAN = 1e-6;
-
 // The mean of p″ about a point of a pyramid, by the points' distance from its base: p″ may have a pole at the
 // surface, as that of d^1.5, and a table's jumps.
 static double mean_curve(const ContactLaw *law, double depth, double span) {
-  double half = TET_A * span;
-  if (!(span > LEAST_SPAN * depth)) return contact_law_at(law, depth).curve;
+  double half = TET[0][1] * span;
+  if (!(span * span > DBL_EPSILON * depth * depth)) return contact_law_at(law, depth).curve;
   double low = fmax(depth - half, 0), high = depth + half;
   return (contact_law_at(law, high).slope - contact_law_at(law, low).slope) / (high - low);
 }
@@ -216,12 +210,10 @@ static void add_body(ContactClipped *clipped, const ContactLaw *law, const Conta
                      const ContactTriangle *triangle, ContactFieldLawSums *sums) {
   const int vertices[4] = {contact_clipped_apex(clipped), triangle->vertex[0], triangle->vertex[1],
                            triangle->vertex[2]};
-  double volume = contact_clipped_pyramid(clipped, triangle) / TET_POINTS, spans[2];
+  double volume = contact_clipped_pyramid(clipped, triangle) / TET_COUNT, spans[2];
   for (int t = 0; t < 2; t++) spans[t] = span_of(clipped, &sides[t], t, vertices);
-  for (int k = 0; k < TET_POINTS && volume != 0; k++) {
-    double shares[4];
-    tet_point(k, shares);
-    Spot spot = spot_between(clipped, sides, 4, vertices, shares);
+  for (int k = 0; k < TET_COUNT && volume != 0; k++) {
+    Spot spot = spot_between(clipped, sides, 4, vertices, TET[k]);
     for (int t = 0; t < 2; t++) {
       double slope = contact_law_at(law, spot.depths[t]).slope;
       for (int z = 0; z < 8; z++) sums->first[t][z] += volume * slope * spot.lanes[z];
@@ -243,9 +235,6 @@ void contact_field_law_add(ContactClipped *clipped, const ContactLaw *law, const
 
 // ---- Shapes, by layers.
 
-// How closely the largest depth is found, where it is searched for.
-static const double NEAR = 1e-6;
-
 static bool reaches(const ContactShape *shape, double time, const double tet[12], double depth) {
   ContactConvex solid;
   if (!(depth < contact_shape_middle(shape))) return false;
@@ -255,10 +244,10 @@ static bool reaches(const ContactShape *shape, double time, const double tet[12]
 
 // The largest depth in a shape that the tetrahedron has: at a vertex, else from above.
 static double reach_into(const ContactShape *shape, double time, const double tet[12]) {
-  double low = 0, high = contact_shape_middle(shape);
+  double low = 0, high = contact_shape_middle(shape), near = sqrt(DBL_EPSILON);
   for (int v = 0; v < 4; v++) low = fmax(low, contact_shape_depth(shape, time, vec3_at(tet + 3 * v)));
-  if (low > 0 && !reaches(shape, time, tet, (1 + NEAR) * low)) return low;
-  while (high - low > NEAR * high) {
+  if (low > 0 && !reaches(shape, time, tet, (1 + near) * low)) return low;
+  while (high - low > near * high) {
     double middle = low > 0 ? (low + high) / 2 : high / 16;
     if (!(middle > 0)) break;
     if (reaches(shape, time, tet, middle))
@@ -270,20 +259,19 @@ static double reach_into(const ContactShape *shape, double time, const double te
 }
 
 // Gauss's points and weights on [0, 1].
-enum { LAYERS = 5 };
-static const double POINT[LAYERS] = {0.046910077030668, 0.230765344947158, 0.5, 0.769234655052842,
-                                     0.953089922969332};
-static const double WEIGHT[LAYERS] = {0.118463442528095, 0.239314335249683, 0.284444444444444,
-                                      0.239314335249683, 0.118463442528095};
+static const double POINT[5] = {0.046910077030668, 0.230765344947158, 0.5, 0.769234655052842,
+                                0.953089922969332};
+static const double WEIGHT[5] = {0.118463442528095, 0.239314335249683, 0.284444444444444, 0.239314335249683,
+                                 0.118463442528095};
+
+enum { LAYER_COUNT = sizeof POINT / sizeof *POINT };
 
 // Depths are powers of what is even, by this exponent: p″ may begin with a root or a pole.
-static const double MOST_CROWDED = 20;
-
 static double crowding(const ContactLaw *law) {
   double n = law->exponent;
   if (law->kind == CONTACT_LAW_FORMULA) return 2;
   if (law->kind != CONTACT_LAW_POWER || n == floor(n)) return 1;
-  return fmin(fmax(2, 1 / (n - 1)), MOST_CROWDED);
+  return fmin(fmax(2, 1 / (n - 1)), 4 * LAYER_COUNT);
 }
 
 // What a layer adds to.
@@ -314,7 +302,7 @@ static void add_layer(const Pressed *pressed, double depth, double weight) {
 // ∫ p″ E between two depths.
 static void add_layers(const Pressed *pressed, const ContactLaw *law, double low, double high) {
   double crowd = crowding(law), from = pow(low, 1 / crowd), to = pow(high, 1 / crowd);
-  for (int k = 0; k < LAYERS && low < high; k++) {
+  for (int k = 0; k < LAYER_COUNT && low < high; k++) {
     double u = from + (to - from) * POINT[k], depth = pow(u, crowd);
     double width = (to - from) * crowd * pow(u, crowd - 1) * WEIGHT[k];
     add_layer(pressed, depth, width * contact_law_at(law, depth).curve);

@@ -24,7 +24,7 @@
 #define TETLAP_CONTACT_PRESSURE_FIELD_LAW_H
 
 #include "contact/pressure/clipped.h"
-#include "contact/pressure/field.h"
+#include "contact/pressure/field_pair.h"
 #include "contact/pressure/law.h"
 #include "contact/pressure/side.h"
 

@@ -2,6 +2,7 @@
 #include "contact/pressure/law.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -123,17 +124,14 @@ static bool check_table(const ContactLaw *law, char *why, size_t size) {
   return true;
 }
 
-// Depths that are looked at, from a share of the deepest on, evenly in the logarithm.
-enum { LOOKS = 400 };
-static const double SHALLOWEST = 1e-9;
-// Of p(0), over the pressure at the deepest look: what rounding may leave of a formula.
-static const double ROUNDING = 1e-12;
+// Depths that are looked at, evenly in the logarithm up to the deepest.
+enum { LOOK_COUNT = 400 };
 
 bool contact_law_check(const ContactLaw *law, double deepest, double highest, char *why, size_t size) {
   if (law->kind == CONTACT_LAW_TABLE && !check_table(law, why, size)) return false;
   double start = contact_law_at(law, 0).pressure, last = fmin(start, 0);
-  for (int k = 0; k < LOOKS && last < highest; k++) {
-    double depth = deepest * pow(SHALLOWEST, 1 - (double)k / (LOOKS - 1));
+  for (int k = 0; k < LOOK_COUNT && last < highest; k++) {
+    double depth = deepest * pow(DBL_EPSILON, 1 - (double)k / (LOOK_COUNT - 1));
     ContactLawValue value = contact_law_at(law, depth);
     if (!isfinite(value.pressure + value.slope + value.curve))
       snprintf(why, size,
@@ -149,7 +147,7 @@ bool contact_law_check(const ContactLaw *law, double deepest, double highest, ch
     }
     return false;
   }
-  if (last > 0 && fabs(start) <= ROUNDING * last) return true;
+  if (last > 0 && fabs(start) <= DBL_EPSILON * last) return true;
   if (start != 0)
     snprintf(why, size, "without overlap the pressure is %g Pa; it must be 0", start);
   else
