@@ -42,6 +42,13 @@ void datagen_hard_subdivide(const double tet[12], const double weights[4], doubl
   }
 }
 
+void datagen_hard_fill(const DatagenHardClass *class, Random *random, DatagenHardPair *pair) {
+  if (class->make)
+    class->make(random, pair);
+  else
+    class->make_of(random, pair, class->number);
+}
+
 // A coordinate on the grid in [low, high].
 static double grid(Random *random, double low, double high) {
   return round(random_between(random, low, high) * 256) / 256;
@@ -172,24 +179,15 @@ static void make_shallow(Random *random, DatagenHardPair *pair) {
     datagen_hard_set(pair, i, vec3_sub(datagen_hard_vertex(pair, i), vec3_scale(depth, n)));
 }
 
-// `vertices` of the second tetrahedron lie exactly in a face of the first, the others beyond it.
-static void touch_face(Random *random, DatagenHardPair *pair, int vertices) {
+// So many vertices of the second tetrahedron lie exactly in a face of the first, the others beyond it.
+static void touch_face(Random *random, DatagenHardPair *pair, double number) {
+  const int vertices = (int)number;
   datagen_hard_fat(random, pair, 0);
   do
     for (int i = 0; i < vertices; i++) datagen_hard_set(pair, 4 + i, face_point(random, pair));
   while (!fill_beyond(random, pair, 4 + vertices, datagen_hard_face_normal(pair, 0),
                       datagen_hard_vertex(pair, 1)));
   expect(pair, 0, 0);
-}
-
-static void make_vertex_face(Random *random, DatagenHardPair *pair) {
-  touch_face(random, pair, 1);
-}
-static void make_edge_face(Random *random, DatagenHardPair *pair) {
-  touch_face(random, pair, 2);
-}
-static void make_face_face(Random *random, DatagenHardPair *pair) {
-  touch_face(random, pair, 3);
 }
 
 // The same vertex, and a plane through it that separates the rest: neighbours in a mesh.
@@ -209,8 +207,9 @@ static void make_vertex_vertex(Random *random, DatagenHardPair *pair) {
   expect(pair, 0, 0);
 }
 
-// A vertex in the middle of the edge (0, 1); `on_edge` 2: both ends of it, a shared edge.
-static void touch_edge(Random *random, DatagenHardPair *pair, int on_edge) {
+// 1: a vertex in the middle of the edge (0, 1); 2: both ends of it, a shared edge.
+static void touch_edge(Random *random, DatagenHardPair *pair, double number) {
+  const int on_edge = (int)number;
   Vec3 n, a, b;
   do {
     datagen_hard_fat(random, pair, 0);
@@ -220,13 +219,6 @@ static void touch_edge(Random *random, DatagenHardPair *pair, int on_edge) {
     if (on_edge == 2) datagen_hard_set(pair, 5, b);
   } while (!fill_beyond(random, pair, 4 + on_edge, n, a));
   expect(pair, 0, 0);
-}
-
-static void make_vertex_edge(Random *random, DatagenHardPair *pair) {
-  touch_edge(random, pair, 1);
-}
-static void make_shared_edge(Random *random, DatagenHardPair *pair) {
-  touch_edge(random, pair, 2);
 }
 
 // Two edges cross in the middle of each.
@@ -255,22 +247,12 @@ static void make_shared_face(Random *random, DatagenHardPair *pair) {
 }
 
 // One, two or three vertices in common, the rest anywhere: as a folded mesh has them.
-static void share(Random *random, DatagenHardPair *pair, int vertices) {
+static void share(Random *random, DatagenHardPair *pair, double vertices) {
   do {
     datagen_hard_fat(random, pair, 0);
     datagen_hard_fat(random, pair, 1);
     for (int i = 0; i < vertices; i++) datagen_hard_set(pair, 4 + i, datagen_hard_vertex(pair, i));
   } while (!(overlap_invariant_tet_volume(pair->x + 12) >= 0.02 / 6));
-}
-
-static void make_shared_vertex_overlap(Random *random, DatagenHardPair *pair) {
-  share(random, pair, 1);
-}
-static void make_shared_edge_overlap(Random *random, DatagenHardPair *pair) {
-  share(random, pair, 2);
-}
-static void make_shared_face_overlap(Random *random, DatagenHardPair *pair) {
-  share(random, pair, 3);
 }
 
 // Faces (0, 1, 2) of both in the plane z = slope·(x/2 + y/4), exactly; apexes on the same or opposite sides.
@@ -402,13 +384,6 @@ static void scaled(Random *random, DatagenHardPair *pair, double scale) {
   make_uniform(random, pair);
   for (int i = 0; i < 24; i++) pair->x[i] *= scale;
 }
-static void make_tiny(Random *random, DatagenHardPair *pair) {
-  scaled(random, pair, 1e-9);
-}
-static void make_huge(Random *random, DatagenHardPair *pair) {
-  scaled(random, pair, 1e9);
-}
-
 // Turned inside out: the first, the second or both have the negative orientation.
 static void make_inverted(Random *random, DatagenHardPair *pair) {
   int which = 1 + random_below(random, 3);
@@ -441,10 +416,12 @@ static void make_flat(Random *random, DatagenHardPair *pair) {
 // Any kind of touch, moved: what touched on the grid now does but for the rounding of coordinates, which may
 // part the two or let them share a volume of that size.
 static void make_touching_moved(Random *random, DatagenHardPair *pair) {
-  static void (*const touches[])(Random *, DatagenHardPair *) = {
-      make_vertex_face, make_edge_face,   make_face_face,   make_vertex_vertex,
-      make_vertex_edge, make_shared_edge, make_shared_face, make_edge_edge};
-  touches[random_below(random, 8)](random, pair);
+  static const DatagenHardClass touches[] = {
+      {.make_of = touch_face, .number = 1}, {.make_of = touch_face, .number = 2},
+      {.make_of = touch_face, .number = 3}, {.make = make_vertex_vertex},
+      {.make_of = touch_edge, .number = 1}, {.make_of = touch_edge, .number = 2},
+      {.make = make_shared_face},           {.make = make_edge_edge}};
+  datagen_hard_fill(&touches[random_below(random, 8)], random, pair);
   double rotation[9];
   random_rotation(random, rotation);
   datagen_hard_transform(pair->x, 8, rotation, 1, (Vec3){0.3, -0.7, 1.1});
@@ -511,42 +488,42 @@ static void make_mesh_cells(Random *random, DatagenHardPair *pair) {
 }
 
 const DatagenHardClass datagen_hard_classes[] = {
-    {"far", make_far},
-    {"boxes", make_boxes},
-    {"uniform", make_uniform},
-    {"wild", make_wild},
-    {"shallow", make_shallow},
-    {"vertex on face", make_vertex_face},
-    {"edge on face", make_edge_face},
-    {"face on face", make_face_face},
-    {"vertex on vertex", make_vertex_vertex},
-    {"vertex on edge", make_vertex_edge},
-    {"edge on edge", make_edge_edge},
-    {"shared edge", make_shared_edge},
-    {"shared face", make_shared_face},
-    {"shared vertex, overlapping", make_shared_vertex_overlap},
-    {"shared edge, overlapping", make_shared_edge_overlap},
-    {"shared face, overlapping", make_shared_face_overlap},
-    {"coplanar, same side, axis", make_same_axis},
-    {"coplanar, same side, tilted", make_same_tilted},
-    {"coplanar, same side, rotated", make_same_rotated},
-    {"coplanar, opposite, axis", make_opposite_axis},
-    {"coplanar, opposite, tilted", make_opposite_tilted},
-    {"coplanar, opposite, rotated", make_opposite_rotated},
-    {"identical", make_identical},
-    {"identical but a few ulp", make_few_ulp},
-    {"inside", make_inside},
-    {"inside, touching", make_inside_touching},
-    {"sliver and fat", make_sliver_fat},
-    {"sliver and sliver", make_sliver_sliver},
-    {"offset 1e6", make_offset},
-    {"scale 1e-9", make_tiny},
-    {"scale 1e9", make_huge},
-    {"inverted", make_inverted},
-    {"flat", make_flat},
-    {"touching, moved", make_touching_moved},
-    {"small through a face", make_small_through_face},
-    {"mesh cells", make_mesh_cells},
+    {"far", .make = make_far},
+    {"boxes", .make = make_boxes},
+    {"uniform", .make = make_uniform},
+    {"wild", .make = make_wild},
+    {"shallow", .make = make_shallow},
+    {"vertex on face", .make_of = touch_face, .number = 1},
+    {"edge on face", .make_of = touch_face, .number = 2},
+    {"face on face", .make_of = touch_face, .number = 3},
+    {"vertex on vertex", .make = make_vertex_vertex},
+    {"vertex on edge", .make_of = touch_edge, .number = 1},
+    {"edge on edge", .make = make_edge_edge},
+    {"shared edge", .make_of = touch_edge, .number = 2},
+    {"shared face", .make = make_shared_face},
+    {"shared vertex, overlapping", .make_of = share, .number = 1},
+    {"shared edge, overlapping", .make_of = share, .number = 2},
+    {"shared face, overlapping", .make_of = share, .number = 3},
+    {"coplanar, same side, axis", .make = make_same_axis},
+    {"coplanar, same side, tilted", .make = make_same_tilted},
+    {"coplanar, same side, rotated", .make = make_same_rotated},
+    {"coplanar, opposite, axis", .make = make_opposite_axis},
+    {"coplanar, opposite, tilted", .make = make_opposite_tilted},
+    {"coplanar, opposite, rotated", .make = make_opposite_rotated},
+    {"identical", .make = make_identical},
+    {"identical but a few ulp", .make = make_few_ulp},
+    {"inside", .make = make_inside},
+    {"inside, touching", .make = make_inside_touching},
+    {"sliver and fat", .make = make_sliver_fat},
+    {"sliver and sliver", .make = make_sliver_sliver},
+    {"offset 1e6", .make = make_offset},
+    {"scale 1e-9", .make_of = scaled, .number = 1e-9},
+    {"scale 1e9", .make_of = scaled, .number = 1e9},
+    {"inverted", .make = make_inverted},
+    {"flat", .make = make_flat},
+    {"touching, moved", .make = make_touching_moved},
+    {"small through a face", .make = make_small_through_face},
+    {"mesh cells", .make = make_mesh_cells},
 };
 
 _Static_assert(sizeof datagen_hard_classes / sizeof *datagen_hard_classes == DATAGEN_HARD_CLASS_COUNT,
@@ -555,6 +532,6 @@ _Static_assert(sizeof datagen_hard_classes / sizeof *datagen_hard_classes == DAT
 DatagenHardPair datagen_hard_make(int class_index, int member) {
   DatagenHardPair pair = {.volume = NAN};
   Random random = random_seeded((uint64_t)(1000 + class_index), (uint64_t)member);
-  datagen_hard_classes[class_index].make(&random, &pair);
+  datagen_hard_fill(&datagen_hard_classes[class_index], &random, &pair);
   return pair;
 }

@@ -23,11 +23,16 @@ typedef struct DatagenHardPair {
 
 typedef struct DatagenHardClass {
   const char *name;
-  void (*make)(Random *random, DatagenHardPair *pair);
+  void (*make)(Random *random, DatagenHardPair *pair); // NULL: `make_of` a number
+  void (*make_of)(Random *random, DatagenHardPair *pair, double number);
+  double number;
 } DatagenHardClass;
 
 enum { DATAGEN_HARD_CLASS_COUNT = 36 };
 extern const DatagenHardClass datagen_hard_classes[DATAGEN_HARD_CLASS_COUNT];
+
+// Makes a member of the class: its coordinates and what is known of it; the rest of the pair stays.
+void datagen_hard_fill(const DatagenHardClass *class, Random *random, DatagenHardPair *pair);
 
 // The k-th (0 … 23) order of a tetrahedron's vertices; every second one turns it inside out.
 void datagen_hard_permute(const double tet[12], int k, double permuted[12]);

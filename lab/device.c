@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "lab/device.h"
+// `tetlap-lab device DEVICE`: the models that a device has kernels for, by where the pairs lie.
+//
+//   device   numbers by column, there already; the answers stay there
+//   indices  positions and tetrahedra, there already; a pair is two indices; the answers stay there
+//   host     sent from the host as the models take them, and all answers fetched
+//
+// With --torch PyTorch evaluates networks beside, on the same device: the network alone, whose inputs are
+// there, without the gate before it and the frame around it (torch/network.h).
+//
+// A rate is of complete answers: with the pairs that one kernel hands on to the next, and to the host.
+#include "lab/program.h"
 
 #include <limits.h>
 #include <math.h>
@@ -61,9 +71,9 @@ typedef struct Contestant {
   int residence, batch, calls;
   DeviceQuantity quantity;
   AppBenchTimer timer;
-  double kernel_s[APP_BENCH_MAX_REPEATS]; // of a pair
-  double gate_share;                      // of kernel_s, of a network: the gate's
-  double flops, instructions;             // arithmetic of a pair, in the mean
+  AppBenchTimer kernels;      // of a pair; only the wall time
+  double gate_share;          // of the kernels' time, of a network: the gate's
+  double flops, instructions; // arithmetic of a pair, in the mean
   int handed_on, to_host;
 } Contestant;
 
@@ -172,7 +182,7 @@ static Status take_turn(Contestant *contestant, const Bench *bench, int round) {
   TRY(device->ops->wait(device->self));
   double parts = (double)contestant->calls * contestant->batch;
   app_bench_timer_stop(&contestant->timer, round, parts);
-  contestant->kernel_s[round] = kernel_s / parts;
+  contestant->kernels.wall[round] = kernel_s / parts;
   const DeviceOverlap *overlap = contestant->overlap;
   contestant->handed_on = overlap->handed_on[0];
   contestant->gate_share = overlap->gate_s / overlap->kernel_s;
@@ -195,15 +205,6 @@ static Status take_rounds(Bench *bench, int first, int first_torch) {
 
 // --- The rows.
 
-static double median_of(double *values, int count) {
-  for (int i = 1; i < count; i++)
-    for (int j = i; j > 0 && values[j - 1] > values[j]; j--) {
-      double kept = values[j];
-      values[j] = values[j - 1], values[j - 1] = kept;
-    }
-  return values[count / 2];
-}
-
 // Of what the device can do at most, over the time of its kernels; of a processor, of what a core can, over
 // processor time. NaN: nobody says.
 static double share_of_peak(const Bench *bench, const Contestant *contestant, double kernel_rate,
@@ -219,10 +220,10 @@ static double share_of_issue(const Bench *bench, const Contestant *contestant, d
   return contestant->instructions > 0 && most > 0 ? contestant->instructions * kernel_rate / most : NAN;
 }
 
-static Row row_of(const Bench *bench, Contestant *contestant) {
+static Row row_of(const Bench *bench, const Contestant *contestant) {
   int rounds = bench->options->common.repeats;
   AppBenchTime time = app_bench_timer_time(&contestant->timer, rounds);
-  const double kernel_rate = 1 / median_of(contestant->kernel_s, rounds);
+  const double kernel_rate = 1 / app_bench_timer_time(&contestant->kernels, rounds).wall;
   return (Row){.model = contestant->model,
                .set = contestant->set,
                .quantity = quantities[contestant->quantity],

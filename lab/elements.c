@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "lab/elements.h"
+// `tetlap-lab elements`: forces and matrices of elements in vector lanes beside one element at a time, for
+// every law and both kinds of elements, on one thread.
+#include "lab/program.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "lab/net.h"
+// `tetlap-lab net`: networks alone, without geometry: our kernels beside PyTorch with the same weights and
+// inputs, in the same run, and their share of a core's peak.
+#include "lab/program.h"
 
 #include <math.h>
 #include <omp.h>

@@ -2,9 +2,6 @@
 #include "lab/program.h"
 
 #include "app/command/commands.h"
-#include "lab/device.h"
-#include "lab/elements.h"
-#include "lab/net.h"
 
 static const AppCommand *const commands[] = {
     &lab_device, &lab_net, &lab_elements, &app_command_version, &app_command_help, NULL,

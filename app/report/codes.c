@@ -27,11 +27,6 @@ uint16_t app_report_codes_encode(AppReportScale scale, double value) {
   return (uint16_t)lround(fmin(fmax(place, 0), 1) * APP_REPORT_LEVELS);
 }
 
-double app_report_codes_decode(AppReportScale scale, uint16_t code) {
-  if (code == APP_REPORT_NO_CODE) return NAN;
-  return scale.low + (double)code / APP_REPORT_LEVELS * (scale.high - scale.low);
-}
-
 // Deflates and writes.
 static Status write_packed(FILE *stream, const unsigned char *bytes, size_t byte_count) {
   size_t packed_count;

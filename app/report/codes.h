@@ -24,7 +24,6 @@ typedef struct AppReportScale {
 // The scale of the finite ones of `count` numbers that stand `stride` apart; {0, 0} if there are none.
 AppReportScale app_report_codes_scale(const double *values, size_t count, size_t stride);
 uint16_t app_report_codes_encode(AppReportScale scale, double value);
-double app_report_codes_decode(AppReportScale scale, uint16_t code); // NaN for APP_REPORT_NO_CODE
 
 // Writes rows (row_count, row_size) of codes as text. Written are differences to the row before and, in the
 // first row, to the code `stride` before.

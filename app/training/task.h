@@ -31,7 +31,7 @@ typedef struct AppTrainingTaskOps {
   // First weights from `config->start`, for the task's inputs.
   Status (*start)(AppTrainingTask *task, NetModel_f32 *model);
   int rows;                                         // of a batch, beyond its samples
-  int (*tangents)(const AppTrainingConfig *config); // of each sample
+  int (*tangents)(const AppTrainingConfig *config); // of each sample; NULL: none
   // The loss of a batch and its gradient by the parameters.
   double (*step)(AppTrainingTask *task, const NetModel_f32 *model, NetWork_f32 *work, long long step,
                  float *gradient);
@@ -41,7 +41,7 @@ typedef struct AppTrainingTaskOps {
   // Writes weights that the overlap models read.
   Status (*write)(const AppTrainingTask *task, const NetModel_f32 *model, const char *provenance,
                   const char *path);
-  const NetWhitening *(*whitening)(const AppTrainingTask *task); // NULL: there is none
+  const NetWhitening *(*whitening)(const AppTrainingTask *task); // of the inputs; NULL: there is none
   void (*destroy)(AppTrainingTask *task);
 } AppTrainingTaskOps;
 

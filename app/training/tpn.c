@@ -438,20 +438,13 @@ static Status write(const AppTrainingTask *task, const NetModel_f32 *model, cons
   return status;
 }
 
-static const NetWhitening *whitening_of(const AppTrainingTask *task) {
-  (void)task;
-  return NULL;
-}
-
 const AppTrainingTaskOps app_training_tpn = {
     .shape = shape,
     .create = create,
     .start = start,
-    .rows = 0,
     .tangents = tangents_of,
     .step = step,
     .validate = validate,
     .write = write,
-    .whitening = whitening_of,
     .destroy = destroy,
 };

@@ -125,7 +125,7 @@ static Status create_network(Training *training) {
   if (!training->gradient || !training->best) return status_no_memory("a training");
   NetWorkDef work = net_work_default();
   work.thread_count = training->options->threads;
-  work.tangent_count = training->task.ops->tangents(training->config);
+  work.tangent_count = training->task.ops->tangents ? training->task.ops->tangents(training->config) : 0;
   work.batch = def->batch + training->task.ops->rows;
   return app_training_task_fail(net_work_create_f32(training->model.plan, &work, &training->work));
 }
@@ -166,7 +166,6 @@ static Status write_checkpoint(Training *training) {
   if (!note) return status_no_memory("a checkpoint");
   training->counts.seconds = clock_wall_s() - training->began_s;
   print_note(training, note, size);
-  const NetWhitening *whitening = training->task.ops->whitening(&training->task);
   NetCheckpoint_f32 checkpoint = {.model = &training->model,
                                   .adam = &training->adam,
                                   .best = training->best,
@@ -174,7 +173,8 @@ static Status write_checkpoint(Training *training) {
                                   .schedule = training->schedule,
                                   .random = net_random_seeded((uint64_t)training->config->seed, 0),
                                   .note = note};
-  if (whitening) checkpoint.whitening = *whitening;
+  const AppTrainingTask *task = &training->task;
+  if (task->ops->whitening) checkpoint.whitening = *task->ops->whitening(task);
   Status status = app_training_task_fail(net_checkpoint_write_f32(training->checkpoint, &checkpoint));
   memory_free(note);
   return status;

@@ -263,6 +263,12 @@ START_TEST(fewer_frames_keep_the_first_and_the_last) {
 }
 END_TEST
 
+// As the page does (report/src).
+static double decode(AppReportScale scale, uint16_t code) {
+  if (code == APP_REPORT_NO_CODE) return NAN;
+  return scale.low + (double)code / APP_REPORT_LEVELS * (scale.high - scale.low);
+}
+
 START_TEST(a_code_is_off_by_half_a_step_at_most) {
   Random random = random_seeded(7, 0);
   double values[1000];
@@ -270,10 +276,9 @@ START_TEST(a_code_is_off_by_half_a_step_at_most) {
   AppReportScale scale = app_report_codes_scale(values, 1000, 1);
   double bound = (scale.high - scale.low) / (2 * APP_REPORT_LEVELS) * (1 + 1e-9);
   for (int i = 0; i < 1000; i++)
-    ck_assert_near(app_report_codes_decode(scale, app_report_codes_encode(scale, values[i])), values[i],
-                   bound);
-  ck_assert(app_report_codes_decode(scale, app_report_codes_encode(scale, scale.low)) == scale.low);
-  ck_assert(app_report_codes_decode(scale, app_report_codes_encode(scale, scale.high)) == scale.high);
+    ck_assert_near(decode(scale, app_report_codes_encode(scale, values[i])), values[i], bound);
+  ck_assert(decode(scale, app_report_codes_encode(scale, scale.low)) == scale.low);
+  ck_assert(decode(scale, app_report_codes_encode(scale, scale.high)) == scale.high);
 }
 END_TEST
 
@@ -285,9 +290,9 @@ START_TEST(what_is_not_finite_has_a_code_of_its_own_and_no_part_in_the_scale) {
     uint16_t code = app_report_codes_encode(scale, values[i]);
     ck_assert_int_eq(code == APP_REPORT_NO_CODE, !isfinite(values[i]));
   }
-  ck_assert(isnan(app_report_codes_decode(scale, APP_REPORT_NO_CODE)));
+  ck_assert(isnan(decode(scale, APP_REPORT_NO_CODE)));
   AppReportScale same = {4, 4};
-  ck_assert(app_report_codes_decode(same, app_report_codes_encode(same, 4)) == 4.0);
+  ck_assert(decode(same, app_report_codes_encode(same, 4)) == 4.0);
 }
 END_TEST
 

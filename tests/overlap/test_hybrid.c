@@ -159,7 +159,7 @@ START_TEST(volumes_stay_below_the_smaller_tetrahedron) {
   for (int n = 0; n < 6000; n++) {
     DatagenHardPair pair;
     double volume;
-    datagen_hard_classes[n % DATAGEN_HARD_CLASS_COUNT].make(&random, &pair);
+    datagen_hard_fill(&datagen_hard_classes[n % DATAGEN_HARD_CLASS_COUNT], &random, &pair);
     bool is_finite = true;
     for (int i = 0; i < SIZE; i++) is_finite = is_finite && isfinite(pair.x[i]);
     if (!is_finite) continue;

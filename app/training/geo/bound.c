@@ -37,11 +37,6 @@ typedef struct Bound {
   float *x, *y, *gy;               // (batch, features), (batch), (batch)
 } Bound;
 
-static int no_tangents(const AppTrainingConfig *config) {
-  (void)config;
-  return 0;
-}
-
 static NetShape shape(const AppTrainingConfig *config) {
   return net_shape_mlp(config->model.features, config->model.width, config->model.depth, 1);
 }
@@ -269,8 +264,6 @@ const AppTrainingTaskOps app_training_bound = {
     .shape = shape,
     .create = create,
     .start = start,
-    .rows = 0,
-    .tangents = no_tangents,
     .step = step,
     .validate = validate,
     .write = write,

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "app/training/task.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "overlap/geo/geo.h"
@@ -16,10 +17,6 @@ void app_training_pool_destroy(AppTrainingPool *pool) {
   memory_free(pool->targets), memory_free(pool->target_rates);
   net_whitening_destroy(&pool->whitening);
   *pool = (AppTrainingPool){0};
-}
-
-static Status fail_as_net(NetStatus status) {
-  return status_fail(status == NET_NO_MEMORY ? STATUS_MEMORY : STATUS_INPUT, "%s", net_status_message());
 }
 
 static double dot(const double *a, const double *b) {
@@ -100,8 +97,7 @@ static Status keep_features(Kept *kept, const OverlapGeoFeatureSet *set, const D
 }
 
 static Status copy_whitening(const NetWhitening *from, NetWhitening *to) {
-  NetStatus status = net_whitening_create(from->count, to);
-  if (status != NET_OK) return fail_as_net(status);
+  TRY(app_training_task_fail(net_whitening_create(from->count, to)));
   size_t n = (size_t)from->count;
   memcpy(to->mean, from->mean, n * sizeof(double));
   memcpy(to->matrix, from->matrix, n * n * sizeof(double));
@@ -195,12 +191,11 @@ static Status create(AppTrainingPool *pool, const DatagenPairs *pairs, size_t co
   pool->count = kept->count;
   pool->apart = kept->apart;
   pool->unfit = (long long)count - kept->count - kept->apart;
-  if (whitening->count) {
+  if (whitening->count)
     TRY(copy_whitening(whitening, &pool->whitening));
-  } else {
-    NetStatus status = net_whitening_fit(pool->set->count, kept->count, kept->features, &pool->whitening);
-    if (status != NET_OK) return fail_as_net(status);
-  }
+  else
+    TRY(app_training_task_fail(
+        net_whitening_fit(pool->set->count, kept->count, kept->features, &pool->whitening)));
   return fill_all(pool, pairs, kept);
 }
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "app/training/task.h"
 #include "base/memory.h"
 #include "overlap/geo/geo.h"
 
@@ -18,10 +19,6 @@ void app_training_vectors_destroy(AppTrainingVectors *vectors) {
   memory_free(vectors->vectors), memory_free(vectors->targets);
   net_whitening_destroy(&vectors->whitening);
   *vectors = (AppTrainingVectors){0};
-}
-
-static Status fail_as_net(NetStatus status) {
-  return status_fail(status == NET_NO_MEMORY ? STATUS_MEMORY : STATUS_INPUT, "%s", net_status_message());
 }
 
 // In double, as they come.
@@ -76,7 +73,7 @@ static Status fit(AppTrainingVectors *vectors, const double *raw) {
       }
   NetStatus status = net_whitening_fit((int)count, SIGNED * pairs, samples, &vectors->whitening);
   memory_free(samples);
-  if (status != NET_OK) return fail_as_net(status);
+  TRY(app_training_task_fail(status));
   // the samples' mean is the rounding of 0
   memset(vectors->whitening.mean, 0, count * sizeof(double));
   return STATUS_OK;
