@@ -512,9 +512,11 @@ Status fem_system_damping_power(FemSystem *system, const FemState *state, double
 
 double fem_system_horizon(const FemSystem *system, const FemForesight *foresight, double time,
                           double farthest) {
-  for (int d = 0; d < system->model->driver_count; d++) {
-    const FemModelDriver *driver = &system->model->drivers[d];
-    if (moves(system, driver)) farthest = fem_drive_horizon(driver->def, foresight, time, farthest);
+  const FemModel *model = system->model;
+  for (int d = 0; d < model->driver_count; d++) {
+    const FemModelDriver *driver = &model->drivers[d];
+    if (moves(system, driver))
+      farthest = fem_drive_horizon(driver->def, model->length, foresight, time, farthest);
   }
   for (int i = 0; i < system->effect_count; i++)
     if (system->effects[i].ops->horizon)

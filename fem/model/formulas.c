@@ -22,7 +22,7 @@ static Status check_motion(const FemSceneDef *scene, const FemConstraintDef *mot
   double at = fmin(time, motion->until);
   if (motion->release > 0 && time >= motion->release) return STATUS_OK;
   for (int c = 0; c < 3; c++) TRY(check(scene, motion->formula[c], whose, name, at));
-  return STATUS_OK;
+  return check(scene, motion->angle, whose, name, at);
 }
 
 Status fem_formulas_check(const FemModel *model, double time) {

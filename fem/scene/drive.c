@@ -6,22 +6,45 @@
 #include "base/vec3.h"
 #include "fem/scene/table.h"
 
-// Rodrigues' formula about the axis through the centre.
+static FemTable table_of(const FemConstraintDef *def) {
+  return (FemTable){def->table, 4, def->table_count};
+}
+
+static FemTable angles_of(const FemConstraintDef *def) {
+  return (FemTable){def->angles, 2, def->angle_count};
+}
+
+// [rad]
+static ExpressionValue angle_at(const FemConstraintDef *def, double time) {
+  ExpressionValue angle = {def->spin * time, def->spin};
+  if (def->angle) {
+    ExpressionValue more = expression_eval(def->angle, time);
+    angle.value += more.value, angle.rate += more.rate;
+  }
+  if (def->angle_count > 0) {
+    double value, rate;
+    fem_table_eval(angles_of(def), time, &value, &rate);
+    angle.value += value, angle.rate += rate;
+  }
+  return angle;
+}
+
+// Rodrigues' formula about the unit vector of an axis.
+static Vec3 turn(Vec3 axis, double angle, Vec3 arm) {
+  Vec3 along = vec3_scale(vec3_dot(axis, arm), axis);
+  Vec3 across = vec3_scale(cos(angle), vec3_sub(arm, along));
+  return vec3_add(vec3_add(across, vec3_scale(sin(angle), vec3_cross(axis, arm))), along);
+}
+
 static void turn_about_axis(const FemConstraintDef *def, double time, double position[3],
                             double velocity[3]) {
   Vec3 axis = vec3_at(def->axis), centre = vec3_at(def->centre);
   axis = vec3_scale(1 / vec3_length(axis), axis);
-  double angle = def->spin * time, cosine = cos(angle), sine = sin(angle);
-  Vec3 arm = vec3_sub(vec3_at(position), centre);
-  Vec3 along = vec3_scale(vec3_dot(axis, arm), axis);
-  Vec3 turned = vec3_add(
-      vec3_add(vec3_scale(cosine, vec3_sub(arm, along)), vec3_scale(sine, vec3_cross(axis, arm))), along);
+  ExpressionValue angle = angle_at(def, time);
+  Vec3 turned = turn(axis, angle.value, vec3_sub(vec3_at(position), centre));
+  Vec3 carried = turn(axis, angle.value, vec3_at(velocity));
   vec3_store(position, vec3_add(centre, turned));
-  vec3_accumulate(velocity, vec3_scale(def->spin, vec3_cross(axis, turned)));
-}
-
-static FemTable table_of(const FemConstraintDef *def) {
-  return (FemTable){def->table, 4, def->table_count};
+  vec3_store(velocity, vec3_add(carried, vec3_scale(angle.rate, vec3_cross(axis, turned))));
 }
 
 // Adds what moves all points alike.
@@ -49,26 +72,44 @@ void fem_drive_point(const FemConstraintDef *def, double time, const double rest
   bool is_frozen = time >= def->until;
   double t = is_frozen ? def->until : time;
   for (int c = 0; c < 3; c++) position[c] = rest[c], velocity[c] = 0;
-  if (def->spin != 0) turn_about_axis(def, t, position, velocity);
-  translate(def, t, position, velocity);
+  bool turns = def->spin != 0 || def->turns;
+  if (def->moves_first) translate(def, t, position, velocity);
+  if (turns) turn_about_axis(def, t, position, velocity);
+  if (!def->moves_first) translate(def, t, position, velocity);
   for (int c = 0; c < 3 && is_frozen; c++) velocity[c] = 0;
 }
 
 double fem_drive_next_change(const FemConstraintDef *def, double time) {
   if (fem_drive_is_still(def) || time >= def->until) return INFINITY;
-  bool flows = def->spin != 0;
+  bool flows = def->spin != 0 || (def->angle && !expression_is_constant(def->angle));
   for (int c = 0; c < 3; c++)
     flows = flows || def->velocity[c] != 0 || def->amplitude[c] != 0 ||
             (def->formula[c] && !expression_is_constant(def->formula[c]));
   if (flows) return time;
-  double next = fem_table_next_change(table_of(def), time);
+  double next = fmin(fem_table_next_change(table_of(def), time), fem_table_next_change(angles_of(def), time));
   return next < def->until ? next : INFINITY;
 }
 
-// The motion of the centre of rotation: turning alone is smooth until it ends.
+// Without the turn, which is another signal.
 static void eval_motion(const void *self, double time, double value[3], double rate[3]) {
   const FemConstraintDef *def = self;
-  fem_drive_point(def, time, def->centre, value, rate);
+  for (int c = 0; c < 3; c++) value[c] = rate[c] = 0;
+  translate(def, fmin(time, def->until), value, rate);
+  for (int c = 0; c < 3 && time >= def->until; c++) rate[c] = 0;
+}
+
+static void eval_angle(const void *self, double time, double value[3], double rate[3]) {
+  const FemConstraintDef *def = self;
+  ExpressionValue angle = angle_at(def, fmin(time, def->until));
+  value[0] = angle.value, rate[0] = time >= def->until ? 0 : angle.rate;
+  value[1] = value[2] = rate[1] = rate[2] = 0;
+}
+
+static double next_knot_of_angle(const void *self, double time) {
+  const FemConstraintDef *def = self;
+  double next = fem_table_next_row(angles_of(def), time);
+  if (def->angle) next = fmin(next, expression_next_kink(def->angle, time));
+  return time < def->until ? fmin(next, def->until) : INFINITY;
 }
 
 static double next_knot(const void *self, double time) {
@@ -80,7 +121,7 @@ static double next_knot(const void *self, double time) {
   return INFINITY;
 }
 
-double fem_drive_horizon(const FemConstraintDef *def, const FemForesight *foresight, double time,
+double fem_drive_horizon(const FemConstraintDef *def, double arm, const FemForesight *foresight, double time,
                          double farthest) {
   FemSignal signal = {.def = def,
                       .eval = eval_motion,
@@ -89,13 +130,20 @@ double fem_drive_horizon(const FemConstraintDef *def, const FemForesight *foresi
                       .impulse = INFINITY};
   for (int c = 0; c < 3; c++)
     signal.is_curved = signal.is_curved || def->formula[c] || def->amplitude[c] != 0;
+  FemSignal angle = {.def = def,
+                     .eval = eval_angle,
+                     .next_knot = next_knot_of_angle,
+                     .is_curved = def->angle,
+                     .deviation = foresight->displacement / arm,
+                     .impulse = INFINITY};
   double horizon = fem_signal_horizon(&signal, foresight, time, farthest);
+  if (def->turns) horizon = fem_signal_horizon(&angle, foresight, time, horizon);
   bool ends_turning = def->spin != 0 && def->until - time > foresight->resolution;
   return ends_turning ? fmin(horizon, def->until) : horizon;
 }
 
 bool fem_drive_is_still(const FemConstraintDef *def) {
-  bool moves = def->spin != 0 || def->table_count > 0;
+  bool moves = def->spin != 0 || def->turns || def->table_count > 0;
   for (int c = 0; c < 3; c++)
     moves = moves || def->velocity[c] != 0 || def->amplitude[c] != 0 || def->formula[c] != NULL;
   return !moves;

@@ -6,8 +6,11 @@
 #include "fem/scene/scene.h"
 #include "fem/scene/signal.h"
 
-// x(t) = centre + R(spin t)(rest − centre) + velocity t + amplitude sin(2π frequency t) + table(t) +
-// formula(t), all frozen from `until` on. Position [m] and velocity [m/s] of the point that rests at `rest`.
+// x(t) = centre + R(θ(t))(rest − centre) + d(t), or where the motion moves first
+// x(t) = centre + R(θ(t))(rest + d(t) − centre), with d = velocity t + amplitude sin(2π frequency t) +
+// table(t)
+// + formula(t) and θ = spin t + angle(t) + angles(t), all frozen from `until` on. Position [m] and velocity
+// [m/s] of the point that rests at `rest`.
 void fem_drive_point(const FemConstraintDef *def, double time, const double rest[3], double position[3],
                      double velocity[3]);
 
@@ -15,8 +18,8 @@ void fem_drive_point(const FemConstraintDef *def, double time, const double rest
 // INFINITY if it never will again.
 double fem_drive_next_change(const FemConstraintDef *def, double time);
 
-// How far a step may go along the motion (signal.h).
-double fem_drive_horizon(const FemConstraintDef *def, const FemForesight *foresight, double time,
+// How far a step may go along the motion (signal.h); turns are seen at `arm` [m] from their axis.
+double fem_drive_horizon(const FemConstraintDef *def, double arm, const FemForesight *foresight, double time,
                          double farthest);
 
 // Whether nothing ever moves.

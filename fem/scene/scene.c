@@ -12,6 +12,8 @@ static void free_constraints(FemConstraintDef *constraints, int count) {
     memory_free(constraints[i].select.group);
     memory_free(constraints[i].table);
     for (int c = 0; c < 3; c++) memory_free(constraints[i].formula[c]);
+    memory_free(constraints[i].angle);
+    memory_free(constraints[i].angles);
   }
   memory_free(constraints);
 }
@@ -46,6 +48,8 @@ static void free_obstacle(FemObstacleDef *obstacle) {
   memory_free(obstacle->motion.select.group);
   memory_free(obstacle->motion.table);
   for (int c = 0; c < 3; c++) memory_free(obstacle->motion.formula[c]);
+  memory_free(obstacle->motion.angle);
+  memory_free(obstacle->motion.angles);
 }
 
 static void free_law(FemContactLawDef *def) {

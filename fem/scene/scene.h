@@ -38,7 +38,8 @@ typedef struct FemSelectDef {
 // Fixed (all motion zero) or driven vertices. A driven vertex moves with the displacement
 // d(t) = velocity·t + amplitude·sin(2π frequency t), or along a table of (time, displacement), or by a
 // formula for each coordinate, until `until`, where it stops; and turns about `axis` through `centre` by
-// spin·t [rad]. From `release` on the vertices are free, with the velocity that they had.
+// spin·t [rad], or by an angle of its own. From `release` on the vertices are free, with the velocity that
+// they had.
 typedef struct FemConstraintDef {
   FemSelectDef select;
   bool components[3];  // which of x, y, z are prescribed
@@ -46,8 +47,13 @@ typedef struct FemConstraintDef {
   double amplitude[3]; // [m]
   double frequency;    // [Hz]
   double spin;         // [rad/s]
+  bool turns;          // by `angle` or `angles`
+  Expression *angle;   // [rad] of t [s], owned; NULL: none
+  double *angles;      // time [s], angle [rad]       (angle_count, 2), times increasing
+  int angle_count;
   double axis[3], centre[3];
-  double *table; // time [s], displacement [m]    (table_count, 4), times increasing
+  bool moves_first; // the turn is of what has been displaced; else what has turned is displaced, axis and all
+  double *table;    // time [s], displacement [m]    (table_count, 4), times increasing
   int table_count;
   Expression *formula[3]; // displacement [m] of t [s], owned; NULL: none
   double until;           // [s]; INFINITY: for ever

@@ -20,6 +20,7 @@
 #include "fem/model/tolerance.h"
 #include "fem/run/check/choice.h"
 #include "fem/run/check/start.h"
+#include "fem/scene/drive.h"
 #include "fem/sparse/solver.h"
 
 enum { MAX_NOTES = 24, MAX_OVERLAPS = 6, MAX_THIN = 6 };
@@ -55,9 +56,7 @@ static bool is_at_rest(const FemSceneDef *scene) {
             !is_zero(body->spin);
   }
   for (int o = 0; o < scene->obstacle_count; o++) {
-    const FemConstraintDef *motion = &scene->obstacles[o].motion;
-    moves = moves || motion->table_count > 0 || motion->spin != 0 || !is_zero(motion->velocity) ||
-            !is_zero(motion->amplitude) || motion->formula[0] || motion->formula[1] || motion->formula[2];
+    moves = moves || !fem_drive_is_still(&scene->obstacles[o].motion);
   }
   return !moves;
 }

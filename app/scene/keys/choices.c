@@ -80,6 +80,18 @@ const SceneChoices app_scene_choices_followings = {
                               {"nothing", "the surface as it was at rest: a dead load"},
                               {0}}};
 
+static const char *order_of_motion_name(int i) { // the number is FemConstraintDef.moves_first
+  static const char *const names[] = {"turn_first", "move_first"};
+  return i < 2 ? names[i] : NULL;
+}
+static const char *order_of_motion_help(int i) {
+  return i == 0
+             ? "turned about the axis, then displaced: the axis goes along"
+             : "displaced, then turned about the axis, which stays where it is: the displacement turns, too";
+}
+const SceneChoices app_scene_choices_orders_of_motion = {.name = order_of_motion_name,
+                                                         .help = order_of_motion_help};
+
 // The numbers are those of overlap/options.h.
 
 const SceneChoices app_scene_choices_ghosts = {

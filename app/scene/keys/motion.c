@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "app/scene/keys/choices.h"
 #include "fem/scene/scene.h"
 
 static const char *finish_fixed(void *self, const char **key) {
@@ -48,6 +49,21 @@ static const SceneSection formula = {
     .keys = formula_keys,
     .some_of = "x y z"};
 
+static const SceneKey turn_keys[] = {
+    {"axis", SCENE_DIRECTION, AT(FemConstraintDef, axis), .required = "[0, 0, 1]", .help = "of the turn"},
+    {"centre", SCENE_VECTOR, AT(FemConstraintDef, centre), .unit = "m", .fallback = "[0, 0, 0]",
+     .help = "a point on the axis"},
+    {"angle", SCENE_FORMULA, AT(FemConstraintDef, angle), .unit = "rad", .help = "as a function of t [s]"},
+    {"table", SCENE_PROFILE, AT(FemConstraintDef, angles), .unit = "s, rad",
+     .count_offset = offsetof(FemConstraintDef, angle_count),
+     .help = "or rows [t, angle], linear between them, constant before and after"},
+    {0},
+};
+static const SceneSection turn = {
+    .help = "a turn about an axis by an angle [rad], counter-clockwise seen against the axis",
+    .keys = turn_keys,
+    .one_of = "angle table"};
+
 static const SceneKey motion_keys[] = {
     {"velocity", SCENE_VECTOR, AT(FemConstraintDef, velocity), .unit = "m/s", .fallback = "[0, 0, 0]",
      .excludes = "table", .help = "constant velocity"},
@@ -61,23 +77,28 @@ static const SceneKey motion_keys[] = {
     {"formula", SCENE_SECTION, .section = &formula, .excludes = "table",
      .help = "displacements by formulas, added to velocity and amplitude"},
     {"spin", SCENE_NUMBER, AT(FemConstraintDef, spin), .unit = "rad/s", .fallback = "0", .needs = "axis",
-     .help = "angular velocity about an axis"},
-    {"axis", SCENE_DIRECTION, AT(FemConstraintDef, axis), .needs = "spin", .help = "of the spin"},
+     .excludes = "turn", .help = "angular velocity about an axis"},
+    {"axis", SCENE_DIRECTION, AT(FemConstraintDef, axis), .needs = "spin", .excludes = "turn",
+     .help = "of the spin"},
     {"centre", SCENE_VECTOR, AT(FemConstraintDef, centre), .unit = "m", .fallback = "[0, 0, 0]",
-     .needs = "spin", .help = "a point on the axis"},
+     .needs = "spin", .excludes = "turn", .help = "a point on the axis"},
+    {"turn", SCENE_SECTION, .section = &turn, MARK(FemConstraintDef, turns, true),
+     .help = "or a turn by a formula or a table"},
+    {"order", SCENE_CHOICE, AT(FemConstraintDef, moves_first), .fallback = "turn_first",
+     .choices = &app_scene_choices_orders_of_motion, .help = "of a turn or spin and a displacement"},
     {"until", SCENE_NUMBER, AT(FemConstraintDef, until), .unit = "s", .range = "(0, inf]", .fallback = ".inf",
      .help = "when the motion stops; the position is then held"},
     {0},
 };
 const SceneSection app_scene_keys_motion = {.help = "a prescribed motion, from t = 0",
                                             .keys = motion_keys,
-                                            .some_of = "velocity amplitude table formula spin"};
+                                            .some_of = "velocity amplitude table formula spin turn"};
 
 const SceneSection app_scene_keys_motion_driven = {.help = "vertices with prescribed motion",
                                                    .size = sizeof(FemConstraintDef),
                                                    .keys = motion_keys,
                                                    .more = &prescribed_more,
                                                    .one_of = "box halfspace group all",
-                                                   .some_of = "velocity amplitude table formula spin",
+                                                   .some_of = "velocity amplitude table formula spin turn",
                                                    .finish = finish_driven,
                                                    PLACE(FemConstraintDef, select.place)};

@@ -7,8 +7,8 @@ static const char *finish_obstacle(void *self, const char **key) {
   FemObstacleDef *obstacle = self;
   for (int c = 0; c < 3; c++) obstacle->motion.components[c] = true;
   *key = "motion";
-  bool turns = obstacle->kind == FEM_OBSTACLE_HALFSPACE && obstacle->motion.spin != 0;
-  return turns ? "a half-space does not turn; use a box" : NULL;
+  bool turns = obstacle->motion.spin != 0 || obstacle->motion.turns;
+  return turns && obstacle->kind == FEM_OBSTACLE_HALFSPACE ? "a half-space does not turn; use a box" : NULL;
 }
 
 static const SceneKey halfspace_keys[] = {
@@ -88,7 +88,7 @@ static const SceneKey obstacle_keys[] = {
     {"place", SCENE_SECTION, AT(FemObstacleDef, placement), .section = &app_scene_keys_mesh_place,
      .needs = "mesh", .excludes = "halfspace sphere box cylinder", .help = "position of the mesh"},
     {"motion", SCENE_SECTION, AT(FemObstacleDef, motion), .absent_help = "it stands still",
-     .section = &app_scene_keys_motion, .help = "how it moves; a half-space must not spin"},
+     .section = &app_scene_keys_motion, .help = "how it moves; a half-space must not turn"},
     {0},
 };
 const SceneSection app_scene_keys_obstacle = {.help = "a rigid solid in contact with bodies",

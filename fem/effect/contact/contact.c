@@ -50,10 +50,11 @@ static void destroy(void *self) {
 
 // Obstacles with elements are among the model's drivers.
 static double horizon(const void *self, const FemForesight *foresight, double time, double farthest) {
-  const FemSceneDef *scene = ((const Contact *)self)->model->scene;
+  const FemModel *model = ((const Contact *)self)->model;
+  const FemSceneDef *scene = model->scene;
   for (int o = 0; o < scene->obstacle_count; o++)
     if (scene->obstacles[o].kind != FEM_OBSTACLE_MESH)
-      farthest = fem_drive_horizon(&scene->obstacles[o].motion, foresight, time, farthest);
+      farthest = fem_drive_horizon(&scene->obstacles[o].motion, model->length, foresight, time, farthest);
   return farthest;
 }
 

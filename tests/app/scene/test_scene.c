@@ -94,6 +94,12 @@ static void check_constraints(const FemBodyDef *body) {
   ck_assert_double_eq(expression_eval(driven[4].formula[1], 3).value, 2);
   ck_assert_double_eq(expression_eval(driven[4].formula[2], 3).value, 9);
   ck_assert_double_eq(driven[4].release, 1.75);
+  ck_assert(driven[3].turns && driven[3].moves_first && !driven[4].moves_first && !driven[2].turns);
+  ck_vector(driven[3].axis, 0, 0, 1);
+  ck_vector(driven[3].centre, 1, 0, 0);
+  ck_assert_int_eq(driven[3].angle_count, 2);
+  ck_assert_double_eq(driven[3].angles[3], 1.5);
+  ck_assert_double_eq(expression_eval(driven[4].angle, 3).value, 1.5);
 }
 
 static void check_loads(const FemBodyDef *body) {

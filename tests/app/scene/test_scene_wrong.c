@@ -135,7 +135,9 @@ static const Wrong wrong[] = {
     {TIME BODY "contact: {potential: nodel}\n", "s.yaml:3:22: contact.potential: expected one of nodal, "
                                                 "field, found the text 'nodel'; "
                                                 "did you mean 'nodal'?"},
-    {TIME BODY "contact: {net: a.safetensors}\n", "s.yaml:3:16: contact.net: expected a mapping {key: value}, found the text 'a.safetensors'; write the weights"},
+    {TIME BODY "contact: {net: a.safetensors}\n",
+     "s.yaml:3:16: contact.net: expected a mapping {key: value}, found the text 'a.safetensors'; write the "
+     "weights"},
     {TIME BODY "contact: {net: {weights: geo}}\n",
      "s.yaml:3:17: contact.net.weights: there is no such key any more; write the weights"},
     {TIME BODY "contact: {overlap: clop}\n", "s.yaml:3:20: contact.overlap: expected one of clip"},
@@ -205,13 +207,17 @@ static const Wrong wrong[] = {
     {TIME BODY_WITH("fixed: [{all: true, group: top}]"),
      "s.yaml:6:25: 'all' and 'group' in bodies[0].fixed[0] contradict each other"},
     {TIME BODY_WITH("driven: [{all: true}]"), "s.yaml:6:14: bodies[0].driven[0] needs at least one of these "
-                                              "keys: velocity amplitude table formula spin"},
+                                              "keys: velocity amplitude table formula spin turn"},
     {TIME BODY_WITH("driven: [{all: true, velocity: [0, 0, 1], table: [[0, 0, 0, 0]]}]"),
      "s.yaml:6:26: 'velocity' in bodies[0].driven[0] contradicts 'table'; keep one of them"},
     {TIME BODY_WITH("driven: [{all: true, amplitude: [0, 0, 1]}]"),
      "s.yaml:6:26: 'amplitude' in bodies[0].driven[0] also needs 'frequency'"},
     {TIME BODY_WITH("driven: [{all: true, spin: 1}]"),
      "s.yaml:6:26: 'spin' in bodies[0].driven[0] also needs 'axis'"},
+    {TIME BODY_WITH("driven: [{all: true, spin: 1, axis: [0, 0, 1], turn: {axis: [0, 0, 1], angle: t}}]"),
+     "s.yaml:6:26: 'spin' in bodies[0].driven[0] contradicts 'turn'; keep one of them"},
+    {TIME BODY_WITH("driven: [{all: true, turn: {axis: [0, 0, 1]}}]"),
+     "s.yaml:6:32: bodies[0].driven[0].turn needs one of these keys: angle table"},
     {TIME "bodies: [{name: a, mesh: {file: a, box: {size: [1, 1, 1], cells: 1}}, " MATERIAL "}]\n",
      "s.yaml:2:36: 'file' and 'box' in bodies[0].mesh contradict each other"},
     {TIME "bodies: [{name: a, mesh: {}, " MATERIAL "}]\n",

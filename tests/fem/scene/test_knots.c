@@ -35,7 +35,7 @@ END_TEST
 
 static double horizon_of(const double *rows, int count, double time, double farthest) {
   FemConstraintDef def = {.table = (double *)rows, .table_count = count, .until = INFINITY};
-  return fem_drive_horizon(&def, &foresight, time, farthest);
+  return fem_drive_horizon(&def, 1, &foresight, time, farthest);
 }
 
 START_TEST(a_step_ends_at_the_knots_of_a_pulse) {
@@ -78,13 +78,13 @@ END_TEST
 
 START_TEST(an_end_of_motion_is_a_knot_of_moving_and_of_turning) {
   FemConstraintDef def = {.velocity = {0, 1, 0}, .until = 2};
-  ck_assert_double_eq(fem_drive_horizon(&def, &foresight, 1, 5), 2);
-  ck_assert_double_eq(fem_drive_horizon(&def, &foresight, 2, 5), 5);
+  ck_assert_double_eq(fem_drive_horizon(&def, 1, &foresight, 1, 5), 2);
+  ck_assert_double_eq(fem_drive_horizon(&def, 1, &foresight, 2, 5), 5);
   def = (FemConstraintDef){.spin = 3, .axis = {0, 0, 1}, .until = 2};
-  ck_assert_double_eq(fem_drive_horizon(&def, &foresight, 1, 5), 2);
-  ck_assert_double_eq(fem_drive_horizon(&def, &foresight, 2, 5), 5);
+  ck_assert_double_eq(fem_drive_horizon(&def, 1, &foresight, 1, 5), 2);
+  ck_assert_double_eq(fem_drive_horizon(&def, 1, &foresight, 2, 5), 5);
   def.until = INFINITY;
-  ck_assert_double_eq(fem_drive_horizon(&def, &foresight, 1, 5), 5);
+  ck_assert_double_eq(fem_drive_horizon(&def, 1, &foresight, 1, 5), 5);
 }
 END_TEST
 
@@ -104,17 +104,17 @@ START_TEST(a_formula_is_followed_to_its_kinks_and_where_it_bends) {
   Expression formula;
   ck_assert_ok(expression_parse(&formula, "smooth((t-1)/0.01) - smooth((t-1.02)/0.01)"));
   FemConstraintDef def = {.formula = {NULL, &formula, NULL}, .until = INFINITY};
-  ck_assert_double_eq(fem_drive_horizon(&def, &foresight, 0.5, 50), 1);
-  ck_assert_near(fem_drive_horizon(&def, &foresight, 1, 50), 1.01, 1e-14);
-  ck_assert_near(fem_drive_horizon(&def, &foresight, 1.015, 50), 1.02, 1e-14);
-  ck_assert_double_eq(fem_drive_horizon(&def, &foresight, 1.03, 50), 50);
+  ck_assert_double_eq(fem_drive_horizon(&def, 1, &foresight, 0.5, 50), 1);
+  ck_assert_near(fem_drive_horizon(&def, 1, &foresight, 1, 50), 1.01, 1e-14);
+  ck_assert_near(fem_drive_horizon(&def, 1, &foresight, 1.015, 50), 1.02, 1e-14);
+  ck_assert_double_eq(fem_drive_horizon(&def, 1, &foresight, 1.03, 50), 50);
   ck_assert_ok(expression_parse(&formula, "sin(t)"));
-  double end = fem_drive_horizon(&def, &foresight, 0, 50);
+  double end = fem_drive_horizon(&def, 1, &foresight, 0, 50);
   ck_assert_double_ge(end, 0.3);
   ck_assert_double_le(end, 1.8); // (h/2)⁴/24 of the amplitude is 1e-3 at h = 0.8
   // Statics goes straight, and stops at kinks alone.
   FemForesight statics = {.displacement = 1e-3, .resolution = 1e-9, .static_share = 1e-3};
-  ck_assert_double_eq(fem_drive_horizon(&def, &statics, 0, 50), 50);
+  ck_assert_double_eq(fem_drive_horizon(&def, 1, &statics, 0, 50), 50);
 }
 END_TEST
 
