@@ -16,7 +16,7 @@ static FemTable angles_of(const FemConstraintDef *def) {
 
 // [rad]
 static ExpressionValue angle_at(const FemConstraintDef *def, double time) {
-  ExpressionValue angle = {def->spin * time, def->spin};
+  ExpressionValue angle = {.value = def->spin * time, .rate = def->spin};
   if (def->angle) {
     ExpressionValue more = expression_eval(def->angle, time);
     angle.value += more.value, angle.rate += more.rate;

@@ -25,12 +25,16 @@ typedef enum FemSelectKind {
   FEM_SELECT_BOX,       // inside box_min … box_max, faces included
   FEM_SELECT_HALFSPACE, // normal·(x − point) ≤ 0
   FEM_SELECT_GROUP,     // a named group of the mesh
+  FEM_SELECT_RADIUS,    // from the line through `point` along `normal`, or, if that is zero, from the point
+  FEM_SELECT_NORMAL,    // of surface triangles whose outward normals make at most `degrees` with `normal`
 } FemSelectKind;
 
 typedef struct FemSelectDef {
   FemSelectKind kind;
   double box_min[3], box_max[3]; // [m], in the scene, at rest
   double point[3], normal[3];
+  double radius_min, radius_max; // [m], both included
+  double degrees;
   char *group;
   FemScenePlace place;
 } FemSelectDef;

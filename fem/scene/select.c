@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/scene/select.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -13,6 +14,13 @@ static bool is_inside_box(const double p[3], const double low[3], const double h
   return true;
 }
 
+// Of a line through the point, or of the point.
+static double distance(const FemSelectDef *select, const double p[3]) {
+  Vec3 arm = vec3_sub(vec3_at(p), vec3_at(select->point)), axis = vec3_at(select->normal);
+  double length = vec3_length(axis);
+  return length > 0 ? vec3_length(vec3_cross(axis, arm)) / length : vec3_length(arm);
+}
+
 static bool is_selected(const FemSelectDef *select, const double p[3]) {
   switch (select->kind) {
   case FEM_SELECT_ALL:
@@ -21,10 +29,42 @@ static bool is_selected(const FemSelectDef *select, const double p[3]) {
     return is_inside_box(p, select->box_min, select->box_max);
   case FEM_SELECT_HALFSPACE:
     return vec3_dot(vec3_at(select->normal), vec3_sub(vec3_at(p), vec3_at(select->point))) <= 0;
+  case FEM_SELECT_RADIUS: {
+    double r = distance(select, p);
+    return r >= select->radius_min && r <= select->radius_max;
+  }
   case FEM_SELECT_GROUP:
+  case FEM_SELECT_NORMAL:
     break;
   }
   return false;
+}
+
+static Vec3 corner(const FemMesh *mesh, int vertex) {
+  return vec3_at(mesh->rest + 3 * (size_t)vertex);
+}
+
+static bool faces(const FemSelectDef *select, const FemMesh *mesh, const int triangle[3]) {
+  Vec3 a = corner(mesh, triangle[0]), direction = vec3_at(select->normal);
+  Vec3 normal = vec3_cross(vec3_sub(corner(mesh, triangle[1]), a), vec3_sub(corner(mesh, triangle[2]), a));
+  double angle = atan2(vec3_length(vec3_cross(normal, direction)), vec3_dot(normal, direction));
+  return angle <= select->degrees * (M_PI / 180);
+}
+
+// Marks the corners of the triangles of the surface that face the direction.
+static Status mark_facing(const FemSelectDef *select, const FemMesh *mesh, bool *is_chosen) {
+  int(*triangles)[3], count;
+  TRY(fem_mesh_surface(mesh, &triangles, &count));
+  for (int i = 0; i < count; i++)
+    for (int k = 0; k < 3 && faces(select, mesh, triangles[i]); k++) is_chosen[triangles[i][k]] = true;
+  memory_free(triangles);
+  return STATUS_OK;
+}
+
+static Status mark(const FemSelectDef *select, const FemMesh *mesh, bool *is_chosen) {
+  if (select->kind == FEM_SELECT_NORMAL) return mark_facing(select, mesh, is_chosen);
+  for (int i = 0; i < mesh->vertex_count; i++) is_chosen[i] = is_selected(select, mesh->rest + 3 * i);
+  return STATUS_OK;
 }
 
 static const FemMeshGroup *find_group(const FemMesh *mesh, const char *name) {
@@ -40,7 +80,8 @@ static Status refuse_group(const FemSelectDef *select, const FemMesh *mesh) {
     snprintf(known + used, sizeof known - used, "%s%s", g ? ", " : "", mesh->groups[g].name);
   }
   return status_fail(STATUS_INPUT, "the mesh has no group '%s'; %s%s", select->group,
-                     mesh->group_count ? "it has " : "it has no named groups: select by box or halfspace",
+                     mesh->group_count ? "it has "
+                                       : "it has no named groups: select by box, halfspace, radius or normal",
                      known);
 }
 
@@ -68,14 +109,17 @@ Status fem_select_vertices(const FemSelectDef *select, const FemMesh *mesh, int 
     *vertex_count = group->vertex_count;
     return STATUS_OK;
   }
-  int *chosen = memory_zeroed((size_t)mesh->vertex_count, sizeof *chosen);
-  if (!chosen) return status_no_memory("a selection of vertices");
-  int count = 0;
-  for (int i = 0; i < mesh->vertex_count; i++)
-    if (is_selected(select, mesh->rest + 3 * i)) chosen[count++] = i;
-  if (count == 0) {
+  int *chosen = memory_zeroed((size_t)mesh->vertex_count, sizeof *chosen), count = 0;
+  bool *is_chosen = memory_zeroed((size_t)mesh->vertex_count, sizeof *is_chosen);
+  Status status =
+      chosen && is_chosen ? mark(select, mesh, is_chosen) : status_no_memory("a selection of vertices");
+  for (int i = 0; i < mesh->vertex_count && !status; i++)
+    if (is_chosen[i]) chosen[count++] = i;
+  memory_free(is_chosen);
+  if (!status && count == 0) status = refuse_empty(mesh);
+  if (status) {
     memory_free(chosen);
-    return refuse_empty(mesh);
+    return status;
   }
   *vertices = chosen;
   *vertex_count = count;

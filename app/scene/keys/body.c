@@ -8,7 +8,7 @@ static const SceneSection inner = {.help = "faces that are not contact surface",
                                    .size = sizeof(FemInnerDef),
                                    .keys = (const SceneKey[]){{0}},
                                    .more = &app_scene_keys_select,
-                                   .one_of = "box halfspace group all",
+                                   .one_of = "box halfspace radius normal group all",
                                    PLACE(FemInnerDef, select.place)};
 
 static const SceneKey probe_keys[] = {
@@ -19,7 +19,7 @@ static const SceneSection probe = {.help = "output for a part of a body",
                                    .size = sizeof(FemProbeDef),
                                    .keys = probe_keys,
                                    .more = &app_scene_keys_select,
-                                   .one_of = "box halfspace group all",
+                                   .one_of = "box halfspace radius normal group all",
                                    PLACE(FemProbeDef, select.place)};
 
 static const SceneKey body_keys[] = {

@@ -34,6 +34,6 @@ const SceneSection app_scene_keys_load = {.help = "an external load",
                                           .size = sizeof(FemLoadDef),
                                           .keys = load_keys,
                                           .more = &app_scene_keys_select,
-                                          .one_of = "box halfspace group all",
+                                          .one_of = "box halfspace radius normal group all",
                                           .some_of = "force body_force traction pressure torque",
                                           PLACE(FemLoadDef, select.place)};

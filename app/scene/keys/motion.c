@@ -32,7 +32,7 @@ const SceneSection app_scene_keys_motion_fixed = {.help = "vertices that do not 
                                                   .size = sizeof(FemConstraintDef),
                                                   .keys = prescribed_keys,
                                                   .more = &app_scene_keys_select,
-                                                  .one_of = "box halfspace group all",
+                                                  .one_of = "box halfspace radius normal group all",
                                                   .finish = finish_fixed,
                                                   PLACE(FemConstraintDef, select.place)};
 
@@ -98,7 +98,7 @@ const SceneSection app_scene_keys_motion_driven = {.help = "vertices with prescr
                                                    .size = sizeof(FemConstraintDef),
                                                    .keys = motion_keys,
                                                    .more = &prescribed_more,
-                                                   .one_of = "box halfspace group all",
+                                                   .one_of = "box halfspace radius normal group all",
                                                    .some_of = "velocity amplitude table formula spin turn",
                                                    .finish = finish_driven,
                                                    PLACE(FemConstraintDef, select.place)};

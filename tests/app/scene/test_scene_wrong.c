@@ -203,7 +203,7 @@ static const Wrong wrong[] = {
      "s.yaml:3:61: obstacles[0].halfspace.normal: expected a direction"},
     // Contradictions.
     {TIME BODY_WITH("fixed: [{components: [x]}]"),
-     "s.yaml:6:13: bodies[0].fixed[0] needs one of these keys: box halfspace group all"},
+     "s.yaml:6:13: bodies[0].fixed[0] needs one of these keys: box halfspace radius normal group all"},
     {TIME BODY_WITH("fixed: [{all: true, group: top}]"),
      "s.yaml:6:25: 'all' and 'group' in bodies[0].fixed[0] contradict each other"},
     {TIME BODY_WITH("driven: [{all: true}]"), "s.yaml:6:14: bodies[0].driven[0] needs at least one of these "
