@@ -9,6 +9,7 @@
 #include "base/vec3.h"
 #include "contact/evaluation.h"
 #include "contact/shape/convex.h"
+#include "contact/shape/shape.h"
 #include "contact/surface/middle.h"
 
 // |h| from which on a direction is one; how far h may turn at once and be followed (cosines); where an
@@ -34,15 +35,6 @@ void contact_passage_destroy(ContactPassage *passage) {
   *passage = (ContactPassage){0};
 }
 
-// The most that a point can be inside of a shape [m].
-static double depth_of_shape(const ContactShape *shape) {
-  if (shape->kind == CONTACT_SHAPE_HALFSPACE) return INFINITY;
-  if (shape->kind == CONTACT_SHAPE_BALL) return shape->radius;
-  double least = INFINITY;
-  for (int k = 0; k < shape->convex->plane_count; k++) least = fmin(least, shape->convex->offsets[k]);
-  return least;
-}
-
 // Of the cell, or of the shape that stands for it.
 static double volume_of(const ContactLayout *layout, int cell) {
   return cell < 0 ? INFINITY : layout->cell_volumes[cell];
@@ -64,8 +56,9 @@ static void add_pair(const ContactPassage *passage, const ContactLayout *layout,
   vec3_accumulate(meeting->slope, vec3_scale(field->weighed[side], slope));
   meeting->size += field->weighed[side] * vec3_length(slope);
   if (!passage->middles) return;
-  double middle = other < 0 ? depth_of_shape(&layout->def.shapes[layout->interfaces[pair->interface].shape])
-                            : passage->middles[other];
+  double middle = other < 0
+                      ? contact_shape_middle(&layout->def.shapes[layout->interfaces[pair->interface].shape])
+                      : passage->middles[other];
   meeting->reach = fmax(meeting->reach, field->depths[1 - side] / middle);
 }
 
@@ -203,6 +196,16 @@ int contact_passage_turned(const ContactPassage *passage, ContactPassageEntry *f
   for (int i = 0; i < passage->now.count; i++) {
     if (!passage->now.entries[i].is_turned) continue;
     if (count++ == 0) *first = passage->now.entries[i];
+  }
+  return count;
+}
+
+int contact_passage_inside(const ContactPassage *passage, ContactPassageEntry *first) {
+  int count = 0;
+  for (int i = 0; i < passage->now.count; i++) {
+    const ContactPassageEntry *entry = &passage->now.entries[i];
+    if (!(entry->covered > 1 - rounding() && entry->reach > 0.5)) continue;
+    if (count++ == 0) *first = *entry;
   }
   return count;
 }

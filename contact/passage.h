@@ -73,6 +73,10 @@ void contact_passage_accept(ContactPassage *passage);
 // How many elements are turned at the accepted state, and the first of them.
 int contact_passage_turned(const ContactPassage *passage, ContactPassageEntry *first);
 
+// How many elements of the accepted state lie inside of another body: they are covered, or cover what they
+// meet, and reach more than half way to its middle. `field` only.
+int contact_passage_inside(const ContactPassage *passage, ContactPassageEntry *first);
+
 // What a checkpoint keeps: so many numbers, a row an entry of `now`.
 enum { CONTACT_PASSAGE_KEPT = 6 };
 void contact_passage_save(const ContactPassage *passage, double *values);

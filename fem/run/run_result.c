@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/run/run_result.h"
+#include "fem/model/compliance.h"
 
 #include <assert.h>
 #include <math.h>
@@ -108,7 +109,14 @@ static void append_trouble(char *text, size_t size, size_t *used, const char *wh
 const char *fem_run_outcome(const FemRunResult *result, Status status) {
   if (status == STATUS_INTERRUPTED) return "interrupted";
   if (status) return "failed";
-  return result->trouble.of[FEM_TROUBLE_PASSED].steps > 0 ? "passed through" : "finished";
+  if (result->trouble.of[FEM_TROUBLE_PASSED].steps > 0) return "passed through";
+  return result->inside.count > 0 ? "inside each other" : "finished";
+}
+
+void fem_run_describe_inside(const FemRunInside *inside, const FemModel *model, char *text, size_t size) {
+  snprintf(text, size, "'%s' and '%s': %d elements, element %d first",
+           fem_compliance_party_name(model, inside->parties[0]),
+           fem_compliance_party_name(model, inside->parties[1]), inside->count, inside->element);
 }
 
 void fem_run_describe_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size) {
@@ -123,6 +131,11 @@ void fem_run_describe_trouble(const FemRunResult *result, const FemModel *model,
                    fem_trouble_advice((FemTroubleKind)k));
   }
   char place[256];
+  if (result->inside.count > 0) {
+    fem_run_describe_inside(&result->inside, model, place, sizeof place);
+    append_trouble(text, size, &used, "bodies lie inside each other at the end", place,
+                   "move them apart at the start, or by less than half of what is thinner");
+  }
   if (trouble->sliver_count > 0) {
     snprintf(place, sizeof place, "%d elements, the worst is element %d", trouble->sliver_count,
              trouble->worst_sliver);

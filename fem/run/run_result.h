@@ -77,6 +77,13 @@ typedef struct FemRunStatus {
   ContactStatusCounts pairs; // summed over the frames
 } FemRunStatus;
 
+// Bodies that lie inside of each other at the end of the run.
+typedef struct FemRunInside {
+  int count;   // elements
+  int element; // the first of them
+  int parties[2];
+} FemRunInside;
+
 typedef struct FemRunAccount {
   Record *record; // contacts and probes as in summary.json, owned; NULL: the run has not begun
   // The pairs of bodies that pressed hardest, described with the error of contact
@@ -110,6 +117,7 @@ typedef struct FemRunResult {
   FemRunContact contact;
   FemRunStatus status;
   FemTrouble trouble;
+  FemRunInside inside;
   FemRunSpread spread; // since this process began
   Record *counters;    // owned
   FemRunAccount account;
@@ -129,9 +137,11 @@ void fem_run_result_add_solver(FemSolverStats *total, const FemSolverStats *part
 void fem_run_result_destroy(FemRunResult *result);
 
 // "finished", "interrupted" or "failed"; "passed through": it reached its end, but bodies passed through each
-// other.
+// other; "inside each other": they lie so at the end.
 const char *fem_run_outcome(const FemRunResult *result, Status status);
 
+// Who lies inside of whom, on one line.
+void fem_run_describe_inside(const FemRunInside *inside, const FemModel *model, char *text, size_t size);
 // The trouble that occurred, three lines each: what, where, what to do; or "none". `model`: the one that ran.
 void fem_run_describe_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size);
 // Extremes and counts that need no action, a line each.

@@ -51,11 +51,29 @@ Status fem_run_watch(FemRunState *run, FemMeasures *measures) {
   return run->options->observe(run->options->observer, &progress);
 }
 
+// At the end of the run, where none passed through another.
+static Status watch_inside(FemRunState *run) {
+  ContactPassageEntry first;
+  int count = contact_passage_inside(&run->recorder.ledger.passage, &first);
+  if (count == 0) return STATUS_OK;
+  const ContactLayout *layout = contact_system_layout(run->recorder.ledger.contact);
+  const ContactInterfaceDef *interface = &layout->interfaces[first.interface];
+  run->result->inside =
+      (FemRunInside){.count = count,
+                     .element = contact_system_origin(run->recorder.ledger.contact, first.tet),
+                     .parties = {interface->a, interface->b}};
+  if (!run->options->is_strict) return STATUS_OK;
+  char text[512];
+  fem_run_describe_inside(&run->result->inside, run->model, text, sizeof text);
+  return status_fail(STATUS_SOLVER, "bodies lie inside each other at the end: %s (--strict)", text);
+}
+
 Status fem_run_watch_passages(FemRunState *run) {
   FemTrouble *trouble = &run->result->trouble;
   FemTroubleState state = trouble->last;
   fem_recorder_find_turned(&run->recorder, &state);
-  if (trouble->of[FEM_TROUBLE_PASSED].steps > 0 || state.count[FEM_TROUBLE_PASSED] == 0) return STATUS_OK;
+  if (trouble->of[FEM_TROUBLE_PASSED].steps > 0) return STATUS_OK;
+  if (state.count[FEM_TROUBLE_PASSED] == 0) return watch_inside(run);
   for (int kind = 0; kind < FEM_TROUBLE_KIND_COUNT; kind++) // the rest of the last step has been added
     if (kind != FEM_TROUBLE_PASSED) state.count[kind] = 0;
   fem_trouble_add(trouble, run->time, &state);

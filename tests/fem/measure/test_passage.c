@@ -133,6 +133,23 @@ START_TEST(what_sleeps_and_is_awakened_does_not_pass) {
 }
 END_TEST
 
+// The stone lies in the plate from the start: in all of its thickness, or in a tenth of it, as in a press
+// fit.
+START_TEST(bodies_that_begin_inside_each_other_do_not_end_well) {
+  for (int k = 0; k < 2; k++) {
+    SceneRun run;
+    char place[64];
+    snprintf(place, sizeof place, "bodies.stone.place.translate=[0.083, 0.077, %g]", k == 0 ? -0.015 : 0.009);
+    scene_run(&run, "pierce",
+              (const char *const[]){
+                  place, "bodies.plate.mesh={box: {size: [0.2, 0.2, 0.01], cells: [20, 20, 1]}}",
+                  "bodies.stone.velocity=[0, 0, 0]", "contact.stiffness=1e4", "time.end=1e-4", NULL});
+    ck_assert_str_eq(fem_run_outcome(&run.result, run.status), k == 0 ? "inside each other" : "finished");
+    scene_close(&run);
+  }
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("passage");
   tcase_add_test(cases, a_stone_that_goes_through_a_plate_passed);
@@ -145,5 +162,6 @@ int main(void) {
   tcase_add_test(cases, what_slides_does_not_pass);
   tcase_add_test(cases, what_rolls_does_not_pass);
   tcase_add_test(cases, what_sleeps_and_is_awakened_does_not_pass);
+  tcase_add_test(cases, bodies_that_begin_inside_each_other_do_not_end_well);
   return suite_run("passage", cases, 60);
 }
