@@ -67,8 +67,17 @@ static Status reserve(ContactSystem *system, const ContactSystemDef *def) {
   return contact_star_sink_create(&system->star_sink, &system->stars);
 }
 
+static bool is_smooth(const ContactSystemDef *def) {
+  for (int b = 0; b < def->body_count; b++)
+    if (def->bodies[b].smooth > 0) return true;
+  return false;
+}
+
+// A step may be as long as without the points of smooth surfaces, so the margin is that of the bodies' own
+// edges.
 static Status create_parts(ContactSystem *system, const ContactSystemDef *def) {
   TRY(contact_stars_create(&system->stars, def));
+  if (is_smooth(def) && !(def->margin > 0)) system->stars.def.margin = contact_layout_margin(def);
   TRY(contact_layout_create(&system->layout, &system->stars.def));
   TRY(reserve(system, def));
   TRY(contact_candidates_create(&system->candidates, &system->layout));

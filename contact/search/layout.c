@@ -53,7 +53,7 @@ static double mean_edge(const ContactSystemDef *def, const ContactBody *body) {
   return sum / (6 * (body->tet_end - body->tet_begin));
 }
 
-static double default_margin(const ContactSystemDef *def) {
+double contact_layout_margin(const ContactSystemDef *def) {
   double shortest = INFINITY;
   for (int b = 0; b < def->body_count; b++)
     if (def->bodies[b].tet_end > def->bodies[b].tet_begin)
@@ -170,7 +170,7 @@ Status contact_layout_create(ContactLayout *layout, const ContactSystemDef *def)
     return status_no_memory("the contact system's volumes");
   list_interfaces(layout);
   for (int f = 0; f < layout->interface_count; f++) TRY(check_stiffness(layout->interfaces[f].stiffness));
-  layout->margin = def->margin > 0 ? def->margin : default_margin(def);
+  layout->margin = def->margin > 0 ? def->margin : contact_layout_margin(def);
   nudge_bodies(layout);
   TRY(measure_volumes(layout));
   TRY(make_cells(layout));

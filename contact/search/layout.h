@@ -60,6 +60,9 @@ typedef struct ContactLayout {
 Status contact_layout_create(ContactLayout *layout, const ContactSystemDef *def);
 void contact_layout_destroy(ContactLayout *layout);
 
+// The margin where the definition gives none: half the shortest mean edge of a body [m].
+double contact_layout_margin(const ContactSystemDef *def);
+
 // The vertices of the tetrahedron that a cell is part of: those on which the forces of the cell act.
 static inline const int *contact_layout_vertices(const ContactLayout *layout, int cell) {
   return layout->def.tets[contact_mesh_tet(&layout->mesh, cell)];

@@ -388,6 +388,17 @@ START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
 }
 END_TEST
 
+// New points are no shorter edges of the body.
+START_TEST(a_step_may_be_as_long_as_without_points) {
+  Scene facets, smooth;
+  press_domes(&facets, "clip", 0);
+  press_domes(&smooth, "clip", 2);
+  ck_assert_near(contact_system_layout(smooth.system)->margin, contact_system_layout(facets.system)->margin,
+                 0);
+  destroy(&facets), destroy(&smooth);
+}
+END_TEST
+
 START_TEST(a_row_says_that_it_has_no_room) {
   ContactSmoothRow row;
   row.count = 0, row.is_full = false;
@@ -408,6 +419,7 @@ int main(void) {
   tcase_add_loop_test(tests, cells_fill_the_body_without_cracks, 0, 4);
   tcase_add_loop_test(tests, an_even_pressure_loads_vertices_by_a_third_of_their_faces, 1, 3);
   tcase_add_test(tests, a_body_of_flat_faces_stays_as_it_is);
+  tcase_add_test(tests, a_step_may_be_as_long_as_without_points);
   tcase_add_test(tests, a_row_says_that_it_has_no_room);
   tcase_add_loop_test(tests, forces_balance_and_are_minus_the_gradient_of_the_energy, 0, 8);
   tcase_add_loop_test(tests, stiffness_is_minus_the_derivative_of_the_forces, 1, 3);
