@@ -10,6 +10,7 @@
 #include "app/cli/format.h"
 #include "app/cli/versions.h"
 #include "app/job/inputs.h"
+#include "app/job/stiffness.h"
 #include "app/scene/overlap.h"
 #include "app/scene/read.h"
 #include "app/scene/write.h"
@@ -181,12 +182,23 @@ const char *app_job_weights(const AppJob *job, char path[PATH_MAX]) {
   return app_scene_overlap_source(&job->scene, source) && app_model_names_locate(source, path) ? path : NULL;
 }
 
+static void log_stiffness(const FemModel *model) {
+  char stiffness[1024], levels[1024];
+  FemCompliance choice;
+  if (fem_compliance_choose(model, &choice)) return; // a run says why
+  app_stiffness_describe(model, &choice, stiffness, sizeof stiffness);
+  app_stiffness_describe_levels(model, &choice, levels, sizeof levels);
+  log_info("contact: stiffness %s%s%s", stiffness, levels[0] ? "; " : "", levels);
+  fem_compliance_destroy(&choice);
+}
+
 void app_job_log_contact(const AppJob *job) {
   char path[PATH_MAX];
   if (!job->scene.contact.is_on) return;
   const char *weights = app_job_weights(job, path);
   log_info("contact: overlap model %s%s%s%s, potential %s", app_job_overlap(job), weights ? " (" : "",
            weights ? weights : "", weights ? ")" : "", app_job_potential(job));
+  log_stiffness(&job->model);
 }
 
 Record *app_job_summary(const AppJob *job, const FemRunResult *result, Status status) {

@@ -7,9 +7,12 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "contact/surface/roundness.h"
+#include "contact/surface/smooth_points.h"
 #include "contact/surface/surface.h"
 #include "fem/material/svd3.h"
 #include "fem/model/blow.h"
+#include "fem/model/patch.h"
 
 // The deformation of the interface over that of the bodies, and its depth over the height in an impact, at
 // most.
@@ -17,6 +20,13 @@ static const double GIVE = 0.02, BLOW_DEPTH = 0.01;
 // Pressed between faces that hold it, a body is stiffer than E by 1/(1 − HELD ν⁴): a fit, not above what
 // cubes have (1.048 at ν = .3, 1.169 at .45), that keeps the give below 2 % at any ν.
 static const double HELD = 3.5;
+// Where a surface curves: the deformation of the interface over that of the elements at the surface, at
+// least, of what touches in a small patch and of what lies in a hollow, where the pressure varies less; the
+// depth of the overlap over the sagittas, at least; and by what share radii in a hollow differ, at most.
+static const double LAYER_GIVE = 0.34, HOLLOW_GIVE = 0.25, SAGITTAS = 2.5, SNUG = 0.25;
+// Edges in the radius of a patch from which on they resolve it; a radius over that of the curvature from
+// which on bodies are squeezed as a whole.
+static const double RESOLVED = 2.2, WIDE = 0.6;
 
 static Vec3 corner_of(const FemModel *model, int tet, int v) {
   return vec3_at(model->rest + 3 * (size_t)model->tets[tet][v]);
@@ -84,9 +94,55 @@ typedef struct Give {
   double inverse; // 1/E [1/Pa]
   double give;    // (1 − HELD ν⁴)/E: of what is pressed between faces that hold it [1/Pa]
   double volume;  // V [m³]
+  ContactRoundness roundness;
 } Give;
 
+// Whether the body has vertices that cannot move, and others; `held` by vertices.
+static bool find_held(const FemModel *model, const FemModelBody *body, bool *held) {
+  int count = 0;
+  for (int v = body->vertex_begin; v < body->vertex_end; v++) {
+    const bool *is_prescribed = model->is_prescribed + 3 * (size_t)v;
+    held[v] = is_prescribed[0] && is_prescribed[1] && is_prescribed[2];
+    count += held[v];
+  }
+  return count > 0 && count < body->vertex_end - body->vertex_begin;
+}
+
+static Status measure_roundness(const FemModel *model, int b, bool *held, ContactRoundness *roundness) {
+  const FemModelBody *body = &model->bodies[b];
+  ContactBody side = {.vertex_begin = body->vertex_begin,
+                      .vertex_end = body->vertex_end,
+                      .tet_begin = body->tet_begin,
+                      .tet_end = body->tet_end};
+  ContactSystemDef def = {.vertex_count = model->vertex_count,
+                          .rest = model->rest,
+                          .tets = (const int(*)[4])model->tets,
+                          .tet_count = model->tet_count,
+                          .inner = model->inner};
+  return contact_roundness_measure(roundness, &def, &side, model->scene->contact.crease * M_PI / 180,
+                                   find_held(model, body, held) ? held : NULL);
+}
+
+// Obstacles without elements have no edges.
+static void measure_shapes(const FemModel *model, Give *gives) {
+  int party = model->body_count;
+  for (int o = 0; o < model->scene->obstacle_count; o++) {
+    const FemObstacleDef *def = &model->scene->obstacles[o];
+    if (def->kind == FEM_OBSTACLE_MESH) continue;
+    if (def->kind == FEM_OBSTACLE_BALL || def->kind == FEM_OBSTACLE_CYLINDER)
+      gives[party].roundness.round = 1 / def->radius;
+    party++;
+  }
+}
+
 static Status measure_bodies(const FemModel *model, Give *gives) {
+  bool *held = memory_zeroed((size_t)model->vertex_count, sizeof *held);
+  Status status = held ? STATUS_OK : status_no_memory("the curvature of a body");
+  for (int b = 0; b < model->body_count && !status; b++)
+    status = measure_roundness(model, b, held, &gives[b].roundness);
+  memory_free(held);
+  TRY(status);
+  measure_shapes(model, gives);
   for (int b = 0; b < model->scene->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
     const double square = body->material.poisson * body->material.poisson;
@@ -105,6 +161,21 @@ static double give_of(const Give *a, const Give *b) {
   return fmin(a->height, b->height) * (a->give + b->give);
 }
 
+// How two meet of which one curves at least.
+typedef struct Meeting {
+  bool is_curved, is_hollow; // one lies in the other's hollow
+  double curvature;          // [1/m]
+  double radius;             // of their contact; 0: nothing tells it [m]
+  double layer;              // what the interface must yield for each Pa [m/Pa]
+} Meeting;
+
+// A small patch yields by δ = π/2 a Σ 1/E' times the pressure in its middle.
+static double give_at(const Give *a, const Give *b, const Meeting *meeting) {
+  double give = give_of(a, b);
+  if (!(meeting->radius > 0) || meeting->is_hollow) return give;
+  return fmin(give, M_PI / 2 * meeting->radius * (a->give + b->give));
+}
+
 // What the interface must hold in an impact: the pressure p between two bodies that store its energy, evenly
 // strained; beyond E, where they store no more, p²/E, so that their edges hold it.
 static double pressure_of(const Give *a, const Give *b, double blow) {
@@ -113,24 +184,122 @@ static double pressure_of(const Give *a, const Give *b, double blow) {
   return pressure * fmax(1, pressure * compliance);
 }
 
-// Between two bodies: stiff enough for a press and for an impact [J]. `terms`: of p = terms · c d.
-static double stiffness_between(const Give *a, const Give *b, double blow, int terms) {
-  double sum = give_of(a, b), height = a->height;
+// Between two bodies: stiff enough for a press and for an impact [J], and where a surface curves no stiffer
+// than its elements resolve. `terms`: of p = terms · c d.
+static double stiffness_between(const Give *a, const Give *b, double blow, int terms, const Meeting *meeting,
+                                FemComplianceBound *bound) {
+  double sum = give_at(a, b, meeting), height = a->height;
+  *bound = FEM_COMPLIANCE_BODIES;
   if (!(sum > 0)) return 1;
   if (b->height > 0) height = height > 0 ? fmin(height, b->height) : b->height;
-  return fmax(1 / (terms * GIVE * sum), pressure_of(a, b, blow) / (terms * BLOW_DEPTH * height));
+  double stiffness = 1 / (terms * GIVE * sum),
+         struck = pressure_of(a, b, blow) / (terms * BLOW_DEPTH * height);
+  if (meeting->layer > GIVE * sum) stiffness = 1 / (terms * meeting->layer), *bound = FEM_COMPLIANCE_ELEMENTS;
+  if (struck > stiffness) stiffness = struck, *bound = FEM_COMPLIANCE_BLOW;
+  return stiffness;
 }
 
-static Status choose_for_field(const FemModel *model, int party_count, double *stiffness) {
-  Give *gives = memory_zeroed((size_t)party_count, sizeof *gives);
-  Status status = gives ? measure_bodies(model, gives) : status_no_memory("contact stiffness");
+static double curvature_of(const Give *give) {
+  return fmax(give->roundness.round, give->roundness.hollow);
+}
+
+// Whether one lies in the other's hollow.
+static bool fits(double round, double hollow) {
+  return round > 0 && hollow > 0 && fabs(round - hollow) <= SNUG * fmax(round, hollow);
+}
+
+static bool lies_in_hollow(const ContactRoundness *a, const ContactRoundness *b) {
+  return fits(a->round, b->hollow) || fits(b->round, a->hollow);
+}
+
+// What is driven may press others by those between.
+static double farthest_travel(const FemModel *model) {
+  int parties = model->body_count + fem_scene_shape_count(model->scene);
+  double farthest = 0;
+  for (int p = 0; p < parties && model->scene->is_static; p++)
+    farthest = fmax(farthest, fem_patch_travel(model, p));
+  return farthest;
+}
+
+static double radius_between(const FemModel *model, const Give *gives, int a, int b, double curvature) {
+  double force = fmax(fem_patch_load(model, a), fem_patch_load(model, b));
+  double give = gives[a].give + gives[b].give;
+  if (!(give > 0)) return 0;
+  return fem_patch_radius(curvature, 1 / give, farthest_travel(model), force, fem_blow_hardest(model));
+}
+
+// By how much less than LAYER_GIVE the interface yields where more elements resolve the patch.
+static double resolved_by(double radius, double edge) {
+  return edge > 0 ? fmax(1, radius / (RESOLVED * edge)) : 1;
+}
+
+static Meeting meeting_of(const FemModel *model, const Give *gives, int a, int b) {
+  const Give *one = &gives[a], *other = &gives[b];
+  Meeting meeting = {.curvature = curvature_of(one) + curvature_of(other),
+                     .is_hollow = lies_in_hollow(&one->roundness, &other->roundness)};
+  meeting.is_curved = a != b && meeting.curvature > 0;
+  if (!meeting.is_curved) return meeting;
+  meeting.radius = radius_between(model, gives, a, b, meeting.curvature);
+  if (!meeting.is_hollow && meeting.radius * meeting.curvature > WIDE) return (Meeting){.is_curved = false};
+  double edge = fmax(one->roundness.edge, other->roundness.edge);
+  meeting.layer = (meeting.is_hollow ? HOLLOW_GIVE : LAYER_GIVE / resolved_by(meeting.radius, edge)) *
+                  (one->roundness.edge * one->give + other->roundness.edge * other->give);
+  return meeting;
+}
+
+static int terms_of(const FemModel *model, int b) {
+  return b < model->body_count ? 2 : 1;
+}
+
+static void choose_for_field(const FemModel *model, const Give *gives, FemCompliance *choice) {
   double blow = fem_blow_hardest(model);
-  for (int a = 0; a < model->body_count && !status; a++)
-    for (int b = 0; b < party_count; b++)
-      stiffness[a * party_count + b] =
-          stiffness_between(&gives[a], &gives[b], a == b ? 0 : blow, b < model->body_count ? 2 : 1);
-  memory_free(gives);
-  return status;
+  int parties = choice->party_count;
+  for (int a = 0; a < model->body_count; a++)
+    for (int b = 0; b < parties; b++) {
+      Meeting meeting = meeting_of(model, gives, a, b);
+      choice->stiffness[a * parties + b] =
+          stiffness_between(&gives[a], &gives[b], a == b ? 0 : blow, terms_of(model, b), &meeting,
+                            &choice->bounds[a * parties + b]);
+    }
+}
+
+// ---- How often edges are halved.
+
+// The least level at which the depth is as large as SAGITTAS of the facets of both, h²/(8 R · 4^level).
+static int level_between(const FemModel *model, const Give *gives, int a, int b, double stiffness) {
+  const Meeting meeting = meeting_of(model, gives, a, b);
+  double sagitta = 0, give = gives[a].give + gives[b].give;
+  if (!meeting.is_curved || !(give > 0)) return 0;
+  if (meeting.is_hollow) return CONTACT_SMOOTH_MOST_LEVEL;
+  if (!(meeting.radius > 0)) return 1;
+  for (int side = 0; side < 2; side++) {
+    const Give *own = &gives[side ? b : a];
+    sagitta += own->roundness.edge * own->roundness.edge * curvature_of(own) / 8;
+  }
+  double pressure = 2 / M_PI / give * meeting.curvature * meeting.radius;
+  double depth = pressure / (terms_of(model, b) * stiffness);
+  int level = 0;
+  while (level < CONTACT_SMOOTH_MOST_LEVEL && depth * (1 << 2 * level) < SAGITTAS * sagitta) level++;
+  return level;
+}
+
+static void raise_level(FemCompliance *choice, int body, int level) {
+  if (level > choice->levels[body]) choice->levels[body] = level;
+}
+
+static void choose_levels(const FemModel *model, const Give *gives, FemCompliance *choice) {
+  int wanted = model->scene->contact.smooth, parties = choice->party_count;
+  for (int a = 0; a < model->body_count; a++) {
+    if (wanted >= 0) choice->levels[a] = wanted;
+    for (int b = a + 1; b < parties && wanted < 0; b++) {
+      int level = level_between(model, gives, a, b, choice->stiffness[a * parties + b]);
+      raise_level(choice, a, level);
+      if (b < model->body_count) raise_level(choice, b, level);
+    }
+  }
+  for (int a = 0; a < model->body_count; a++)
+    if (!(curvature_of(&gives[a]) > 0) || model->bodies[a].quadratic_end > model->bodies[a].quadratic_begin)
+      choice->levels[a] = 0;
 }
 
 int fem_compliance_party(const FemModel *model, const char *name) {
@@ -163,15 +332,27 @@ static Status check_pair(const FemModel *model, const FemContactPairDef *pair) {
   return STATUS_OK;
 }
 
-static Status apply_pairs(const FemModel *model, int party_count, double *stiffness) {
+static void set_pair(const FemModel *model, FemCompliance *choice, int a, int b, double stiffness) {
+  if (a >= model->body_count) return;
+  choice->stiffness[a * choice->party_count + b] = stiffness;
+  choice->bounds[a * choice->party_count + b] = FEM_COMPLIANCE_SCENE;
+}
+
+static Status apply_pairs(const FemModel *model, FemCompliance *choice) {
   const FemContactDef *contact = &model->scene->contact;
   for (int i = 0; i < contact->pair_count; i++) {
     const FemContactPairDef *pair = &contact->pairs[i];
     TRY(check_pair(model, pair));
     if (!(pair->stiffness > 0)) continue;
+<<<<<<< HEAD
     int a = fem_compliance_party(model, pair->names[0]), b = fem_compliance_party(model, pair->names[1]);
     if (a < model->body_count) stiffness[a * party_count + b] = pair->stiffness;
     if (b < model->body_count) stiffness[b * party_count + a] = pair->stiffness;
+=======
+    int a = party_of(model, pair->names[0]), b = party_of(model, pair->names[1]);
+    set_pair(model, choice, a, b, pair->stiffness);
+    set_pair(model, choice, b, a, pair->stiffness);
+>>>>>>> 8a98388 (Contact stiffness and contact.smooth are chosen together where surfaces curve)
   }
   return STATUS_OK;
 }
@@ -188,36 +369,54 @@ double fem_compliance_friction(const FemModel *model, int a, int b) {
   return friction;
 }
 
-Status fem_compliance_stiffness(const FemModel *model, double **stiffness, int *party_count) {
+static Status choose(const FemModel *model, Give *gives, FemCompliance *choice) {
   const FemContactDef *contact = &model->scene->contact;
-  int parties = *party_count = model->body_count + fem_scene_shape_count(model->scene);
+  bool is_field = contact->potential == CONTACT_POTENTIAL_FIELD;
+  size_t count = (size_t)model->body_count * (size_t)choice->party_count;
+  for (size_t k = 0; k < count; k++) choice->stiffness[k] = fem_model_contact_stiffness(model);
+  if (is_field) TRY(measure_bodies(model, gives));
+  if (is_field && !(contact->stiffness > 0)) choose_for_field(model, gives, choice);
+  TRY(apply_pairs(model, choice));
+  if (is_field) choose_levels(model, gives, choice);
+  return STATUS_OK;
+}
+
+Status fem_compliance_choose(const FemModel *model, FemCompliance *choice) {
+  int parties = model->body_count + fem_scene_shape_count(model->scene);
   size_t count = (size_t)model->body_count * (size_t)parties;
-  double *table = *stiffness = memory_zeroed(count, sizeof *table);
-  if (!table) return status_no_memory("contact stiffness");
-  for (size_t k = 0; k < count; k++) table[k] = fem_model_contact_stiffness(model);
-  Status status = STATUS_OK;
-  if (contact->potential == CONTACT_POTENTIAL_FIELD && !(contact->stiffness > 0))
-    status = choose_for_field(model, parties, table);
-  if (!status) status = apply_pairs(model, parties, table);
-  if (status) {
-    memory_free(table);
-    *stiffness = NULL;
-  }
+  *choice = (FemCompliance){.party_count = parties};
+  Give *gives = memory_zeroed((size_t)parties, sizeof *gives);
+  choice->stiffness = memory_zeroed(count, sizeof *choice->stiffness);
+  choice->bounds = memory_zeroed(count, sizeof *choice->bounds);
+  choice->levels = memory_zeroed((size_t)model->body_count, sizeof *choice->levels);
+  bool fits = gives && choice->stiffness && choice->bounds && choice->levels;
+  Status status = fits ? choose(model, gives, choice) : status_no_memory("contact stiffness");
+  memory_free(gives);
+  if (status) fem_compliance_destroy(choice);
   return status;
 }
 
-Status fem_compliance_range(const FemModel *model, double range[2]) {
-  double *stiffness;
-  int parties, bodies = model->scene->body_count;
-  TRY(fem_compliance_stiffness(model, &stiffness, &parties));
+void fem_compliance_destroy(FemCompliance *choice) {
+  memory_free(choice->stiffness);
+  memory_free(choice->bounds);
+  memory_free(choice->levels);
+  *choice = (FemCompliance){0};
+}
+
+bool fem_compliance_meets(const FemModel *model, int a, int b) {
+  int bodies = model->scene->body_count;
+  if (a == b) return a < bodies && model->scene->bodies[a].self_contact;
+  return a < bodies || b < bodies;
+}
+
+void fem_compliance_range(const FemModel *model, const FemCompliance *choice, double range[2]) {
+  int parties = choice->party_count;
   range[0] = INFINITY, range[1] = 0;
-  for (int a = 0; a < bodies; a++)
+  for (int a = 0; a < model->scene->body_count; a++)
     for (int b = a; b < parties; b++) {
-      if (a == b && !model->scene->bodies[a].self_contact) continue;
-      range[0] = fmin(range[0], stiffness[a * parties + b]);
-      range[1] = fmax(range[1], stiffness[a * parties + b]);
+      if (!fem_compliance_meets(model, a, b)) continue;
+      range[0] = fmin(range[0], choice->stiffness[a * parties + b]);
+      range[1] = fmax(range[1], choice->stiffness[a * parties + b]);
     }
-  memory_free(stiffness);
   if (!(range[1] > 0)) range[0] = range[1] = fem_model_contact_stiffness(model);
-  return STATUS_OK;
 }

@@ -24,18 +24,48 @@
 // the edge of a cube stores the whole of W, p² L³/(2 E) then (twice that of two equal cubes), within d = L/4
 // (L/3).
 //
-// The rule assumes contact over the whole width. Where the contact is far smaller than both bodies, of radius
-// a, they yield by about p a (1/E_A + 1/E_B) only, and the interface by L/a times 2 % of that. For such
-// contacts set contact.stiffness to about L/a times the chosen value.
+// Where a surface curves, facets touch at corners if the overlap is not as deep as their sagittas, and the
+// elements do not resolve what varies within an edge. So the interface yields at least as much as .27 of the
+// layer of elements at the two surfaces, if one of them curves:
+//
+//   c ≤ 1 / (.54 (h_A/E_A' + h_B/E_B')),     against a shape without elements twice that,
+//
+// h the edge there (contact/surface/roundness.h), unless an impact needs more. By Hertz the overlap of a
+// patch of the radius N h is then as deep as .7 N sagittas of both. That of a patch by
+// fem/model/patch.h, or of what c
+// the scene says, decides about contact.smooth: the least level at which it is as deep as 1.1 sagittas of
+// what is left, h²/(8 R · 4^level). Where one lies in the hollow of another, radii a quarter apart at most,
+// pressures are low beside E h/R: there it is 2. Quadratic elements have their own curved edges.
+//
+// The rule of 2 % assumes contact over the whole width. Where the contact is far smaller than both bodies, of
+// radius a, they yield by about p a (1/E_A + 1/E_B) only, and the interface by L/a times 2 % of that. For
+// such contacts set contact.stiffness to about L/a times the chosen value.
 #ifndef TETLAP_FEM_MODEL_COMPLIANCE_H
 #define TETLAP_FEM_MODEL_COMPLIANCE_H
 
 #include "fem/model/model.h"
 
-// κ of every body with every party, bodies then the obstacles without elements in the scene's order, into
-// (body_count, body_count + obstacle_count); entries of what cannot meet are positive too. An array of the
-// caller's (memory_free). `party_count`: the columns. STATUS_INPUT: `contact.pairs` names what is not there.
-Status fem_compliance_stiffness(const FemModel *model, double **stiffness, int *party_count);
+// What a κ is chosen by.
+typedef enum FemComplianceBound {
+  FEM_COMPLIANCE_SCENE,    // nothing: the scene says it
+  FEM_COMPLIANCE_BODIES,   // 2 % of the compression of the bodies
+  FEM_COMPLIANCE_BLOW,     // the hardest impact
+  FEM_COMPLIANCE_ELEMENTS, // the elements at a curved surface
+} FemComplianceBound;
+
+typedef struct FemCompliance {
+  int party_count;            // bodies (obstacles with a mesh among them), then obstacles without elements
+  double *stiffness;          // κ of body a with party b                    (body_count, party_count)
+  FemComplianceBound *bounds; // what it was chosen by                       (body_count, party_count)
+  int *levels;                // of contact.smooth                           (body_count)
+} FemCompliance;
+
+// Entries of what cannot meet are positive too. STATUS_INPUT: `contact.pairs` names what is not there.
+Status fem_compliance_choose(const FemModel *model, FemCompliance *choice);
+void fem_compliance_destroy(FemCompliance *choice); // also of a zeroed one
+
+// Whether two parties can meet: a body with another party, or with itself.
+bool fem_compliance_meets(const FemModel *model, int a, int b);
 
 // The number of the body or obstacle of that name as a party; −1: there is none.
 int fem_compliance_party(const FemModel *model, const char *name);
@@ -46,7 +76,7 @@ const char *fem_compliance_party_name(const FemModel *model, int party);
 // been checked (fem_compliance_stiffness).
 double fem_compliance_friction(const FemModel *model, int a, int b);
 
-// Its least and largest entry of what can meet.
-Status fem_compliance_range(const FemModel *model, double range[2]);
+// The least and largest κ of what can meet.
+void fem_compliance_range(const FemModel *model, const FemCompliance *choice, double range[2]);
 
 #endif

@@ -186,7 +186,7 @@ typedef struct FemContactDef {
   char *overlap; // name of the overlap model
   OverlapOptions net_options;
   double margin; // [m]; 0: chosen
-  int smooth;    // how often the edges of curved surfaces are halved for contact; 0: facets as they are
+  int smooth;    // how often the edges of curved surfaces are halved for contact; 0: facets as they are; −1: chosen
   double crease; // edges between faces that make more stay sharp [°]
   bool use_full_hessian;
   double friction;                      // coefficient μ between any two; 0: none

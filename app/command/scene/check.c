@@ -8,6 +8,7 @@
 #include "app/cli/parse.h"
 #include "app/cli/ranks.h"
 #include "app/job/job.h"
+#include "app/job/stiffness.h"
 #include "base/cpu.h"
 #include "base/files/record.h"
 #include "base/ranks.h"
@@ -216,18 +217,17 @@ static void print_laws(const FemContactDef *contact) {
 
 static void print_contact(const AppJob *job) {
   const FemContactDef *contact = &job->scene.contact;
-  if (!contact->is_on) return;
-  double range[2];
-  char most[32] = "";
-  if (fem_compliance_range(&job->model, range)) return;
-  if (range[1] > range[0]) snprintf(most, sizeof most, " … %.3g", range[1]);
-  printf("contact       potential %s, stiffness %.3g%s %s%s, overlap model %s\n",
-         contact_def_potential_name(contact->potential), range[0], most,
-         contact_def_potential_unit(contact->potential), contact->stiffness > 0 ? "" : " (chosen)",
+  char text[1024];
+  FemCompliance choice;
+  if (!contact->is_on || fem_compliance_choose(&job->model, &choice)) return;
+  app_stiffness_describe(&job->model, &choice, text, sizeof text);
+  printf("contact       potential %s, overlap model %s\n", contact_def_potential_name(contact->potential),
          app_job_overlap(job));
   print_laws(contact);
-  if (contact->smooth > 0)
-    printf("              curved surfaces smoothed, their edges in %d parts\n", 1 << contact->smooth);
+  printf("              stiffness %s\n", text);
+  app_stiffness_describe_levels(&job->model, &choice, text, sizeof text);
+  if (text[0]) printf("              %s\n", text);
+  fem_compliance_destroy(&choice);
 }
 
 static void print_memory(double bytes) {
@@ -305,10 +305,17 @@ static void record_effects(const FemSceneDef *scene, RecordList *list) {
 static void record_contact(const AppJob *job, Record *record) {
   const FemContactDef *contact = &job->scene.contact;
   record_text(record, "potential", contact_def_potential_name(contact->potential));
-  double range[2];
-  if (!fem_compliance_range(&job->model, range)) {
+  FemCompliance choice;
+  if (!fem_compliance_choose(&job->model, &choice)) {
+    double range[2];
+    int most = 0;
+    fem_compliance_range(&job->model, &choice, range);
     record_number(record, "stiffness", range[0]);
     record_number(record, "largest_stiffness", range[1]);
+    for (int b = 0; b < job->model.body_count; b++)
+      if (choice.levels[b] > most) most = choice.levels[b];
+    record_integer(record, "smooth", most);
+    fem_compliance_destroy(&choice);
   }
   record_text(record, "stiffness_unit", contact_def_potential_unit(contact->potential));
   record_bool(record, "is_stiffness_chosen", !(contact->stiffness > 0));

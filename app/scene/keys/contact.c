@@ -164,7 +164,8 @@ static const SceneKey contact_keys[] = {
      .absent_help = "half the shortest mean edge of a body",
      .help = "pairs nearer than this are candidates; a step that moves a vertex farther is tried again with "
              "a smaller step"},
-    {"smooth", SCENE_INTEGER, AT(FemContactDef, smooth), .range = "[0, 2]", .fallback = "0",
+    {"smooth", SCENE_INTEGER, AT(FemContactDef, smooth), .range = "[0, 2]", .absent = -1,
+     .absent_help = "as often as the overlap needs to be as deep as the facets' sagittas",
      .help = "how often the edges of a curved surface of linear elements are halved for contact, new points "
              "on a smooth surface through the vertices; needs the potential `field`"},
     {"crease", SCENE_NUMBER, AT(FemContactDef, crease), .unit = "°", .range = "(0, 90]", .fallback = "30",

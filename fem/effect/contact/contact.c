@@ -58,7 +58,7 @@ static double horizon(const void *self, const FemForesight *foresight, double ti
   return farthest;
 }
 
-static void list_sides(Contact *contact) {
+static void list_sides(Contact *contact, const FemCompliance *choice) {
   const FemModel *model = contact->model;
   for (int b = 0; b < model->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
@@ -71,7 +71,7 @@ static void list_sides(Contact *contact) {
                       .quadratic_begin = body->quadratic_begin,
                       .quadratic_end = body->quadratic_end,
                       .is_obstacle = body->is_obstacle,
-                      .smooth = model->scene->contact.smooth,
+                      .smooth = choice->levels[b],
                       .meets_itself = b < model->scene->body_count && model->scene->bodies[b].self_contact};
   }
   for (int b = 0; b < model->body_count; b++)
@@ -131,16 +131,15 @@ static Status build(Contact *contact, Contact *old) {
   contact->shapes = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->shapes);
   contact->solids = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->solids);
   if (!contact->bodies || !contact->shapes || !contact->solids) return status_no_memory("the contact bodies");
-  list_sides(contact);
-  double *stiffness;
+  FemCompliance choice;
   const ContactLaw **laws;
-  int party_count;
   TRY(fem_laws_create(model, &laws));
-  Status status = fem_compliance_stiffness(model, &stiffness, &party_count);
+  Status status = fem_compliance_choose(model, &choice);
   if (status) {
     memory_free(laws);
     return status;
   }
+  list_sides(contact, &choice);
   ContactSystemDef system = {.vertex_count = model->vertex_count,
                              .rest = model->rest,
                              .tets = (const int(*)[4])model->tets,
@@ -154,13 +153,13 @@ static Status build(Contact *contact, Contact *old) {
                              .crease = def->crease * RADIANS,
                              .potential = def->potential,
                              .stiffness = fem_model_contact_stiffness(model),
-                             .pair_stiffness = stiffness,
+                             .pair_stiffness = choice.stiffness,
                              .pair_laws = laws,
                              .margin = def->margin,
                              .use_full_hessian = def->use_full_hessian,
                              .model = &contact->overlap};
   status = contact_system_create(&contact->system, &system);
-  memory_free(stiffness);
+  fem_compliance_destroy(&choice);
   memory_free(laws);
   return status;
 }

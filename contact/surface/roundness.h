@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a body's surface curves, and how fine it is meshed there.
+#ifndef TETLAP_CONTACT_ROUNDNESS_H
+#define TETLAP_CONTACT_ROUNDNESS_H
+
+#include "contact/def.h"
+
+// A facet curves with that of its edges which curves most, by the surface estimated from the vertices round
+// it (contact/surface/smooth_points.h); edges that stay sharp do not count. What is less than a twentieth of
+// the surface counts as none.
+typedef struct ContactRoundness {
+  double edge;   // of facets: a tenth of those that curve are finer; of all where none does [m]
+  double round;  // 1/R of the convex ones, the median; 0: there are none [1/m]
+  double hollow; // ... and of the concave ones [1/m]
+} ContactRoundness;
+
+// `crease` as in the definition [rad]. `held` (vertex_count): vertices that cannot move; facets between them
+// do not count. NULL: none.
+Status contact_roundness_measure(ContactRoundness *roundness, const ContactSystemDef *def,
+                                 const ContactBody *body, double crease, const bool *held);
+
+#endif
