@@ -344,15 +344,9 @@ static Status apply_pairs(const FemModel *model, FemCompliance *choice) {
     const FemContactPairDef *pair = &contact->pairs[i];
     TRY(check_pair(model, pair));
     if (!(pair->stiffness > 0)) continue;
-<<<<<<< HEAD
     int a = fem_compliance_party(model, pair->names[0]), b = fem_compliance_party(model, pair->names[1]);
-    if (a < model->body_count) stiffness[a * party_count + b] = pair->stiffness;
-    if (b < model->body_count) stiffness[b * party_count + a] = pair->stiffness;
-=======
-    int a = party_of(model, pair->names[0]), b = party_of(model, pair->names[1]);
     set_pair(model, choice, a, b, pair->stiffness);
     set_pair(model, choice, b, a, pair->stiffness);
->>>>>>> 8a98388 (Contact stiffness and contact.smooth are chosen together where surfaces curve)
   }
   return STATUS_OK;
 }
@@ -362,7 +356,8 @@ double fem_compliance_friction(const FemModel *model, int a, int b) {
   double friction = contact->friction;
   for (int i = 0; i < contact->pair_count; i++) {
     const FemContactPairDef *pair = &contact->pairs[i];
-    int first = fem_compliance_party(model, pair->names[0]), second = fem_compliance_party(model, pair->names[1]);
+    int first = fem_compliance_party(model, pair->names[0]),
+        second = fem_compliance_party(model, pair->names[1]);
     bool is_theirs = (first == a && second == b) || (first == b && second == a);
     if (is_theirs && pair->friction >= 0) friction = pair->friction;
   }

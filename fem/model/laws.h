@@ -10,7 +10,7 @@
 // Whether any two may have a law that is not linear.
 bool fem_laws_are_wanted(const FemContactDef *contact);
 
-// Of every body with every party, in the order of fem_compliance_stiffness (body_count, party_count); an
+// Of every body with every party, in the order of FemCompliance (body_count, party_count); an
 // entry NULL: linear. The table is the caller's (memory_free), NULL if no law is wanted; the laws are the
 // scene's. STATUS_INPUT: a law makes no sense.
 Status fem_laws_create(const FemModel *model, const ContactLaw ***laws);

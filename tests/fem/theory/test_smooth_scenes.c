@@ -15,8 +15,21 @@ START_TEST(a_shaft_presses_on_its_hole_as_lame_says) {
 }
 END_TEST
 
+// Nothing is told but the bodies: c and the level are chosen.
+START_TEST(a_shaft_presses_as_lame_says_at_the_defaults) {
+  SceneRun run;
+  scene_run(&run, "../../examples/validation/shaft", (const char *const[]){"solver.threads=1", NULL});
+  double theory = 0.01 * 1e6 / 0.91 * 3 / 8 * 0.15;
+  int end = run.result.trajectory.frame_count - 1;
+  ck_assert_near(-scene_force(&run, end, 0)[0], theory, 0.03 * theory);
+  ck_assert_near(-scene_force(&run, end, 0)[1], theory, 0.03 * theory);
+  scene_close(&run);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("smooth_scenes");
   tcase_add_test(tests, a_shaft_presses_on_its_hole_as_lame_says);
+  tcase_add_test(tests, a_shaft_presses_as_lame_says_at_the_defaults);
   return suite_run("smooth_scenes", tests, 60);
 }

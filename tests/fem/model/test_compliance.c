@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The contact stiffness where surfaces curve, and how often their edges are halved.
+#include "fem/model/compliance.h"
+
+#include "scene.h"
+
+static void choose(SceneRun *run, const char *name, const char *const *overrides, FemCompliance *choice) {
+  scene_open(run, name, overrides);
+  ck_assert_ok(fem_compliance_choose(&run->model, choice));
+}
+
+static void forget(SceneRun *run, FemCompliance *choice) {
+  fem_compliance_destroy(choice);
+  scene_close(run);
+}
+
+START_TEST(bodies_of_flat_faces_are_pressed_by_their_heights) {
+  SceneRun run;
+  FemCompliance choice;
+  choose(&run, "../../examples/05_press", NULL, &choice);
+  for (int a = 0; a < run.model.body_count; a++) ck_assert_int_eq(choice.levels[a], 0);
+  for (int k = 0; k < run.model.body_count * choice.party_count; k++)
+    ck_assert_int_eq(choice.bounds[k], FEM_COMPLIANCE_BODIES);
+  forget(&run, &choice);
+}
+END_TEST
+
+// Of edges h at the surfaces, .0039 … .196 m here: c ≤ 1/(.5 Σ h/E').
+START_TEST(a_shaft_in_a_hole_is_no_stiffer_than_its_elements) {
+  SceneRun run;
+  FemCompliance choice;
+  choose(&run, "../../examples/validation/shaft", NULL, &choice);
+  double stiff = 1e6 / (1 - 3.5 * 0.3 * 0.3 * 0.3 * 0.3), edges = sqrt(0.15 * 0.198) + sqrt(0.15 * 0.157);
+  ck_assert_int_eq(choice.bounds[1], FEM_COMPLIANCE_ELEMENTS);
+  ck_assert_near(choice.stiffness[1], stiff / (0.5 * edges), 0.02 * choice.stiffness[1]);
+  ck_assert_int_eq(choice.levels[0], 2);
+  ck_assert_int_eq(choice.levels[1], 2);
+  forget(&run, &choice);
+}
+END_TEST
+
+START_TEST(fewer_elements_in_a_patch_are_halved_more) {
+  static const char *const FINE[] = {"bodies.lower.mesh.size=0.01", "bodies.upper.mesh.size=0.01", NULL};
+  SceneRun run;
+  FemCompliance coarse, fine;
+  choose(&run, "../../examples/validation/crossed", NULL, &coarse);
+  ck_assert_int_eq(coarse.levels[0], 1);
+  ck_assert_int_eq(coarse.bounds[1], FEM_COMPLIANCE_ELEMENTS);
+  double soft = coarse.stiffness[1];
+  forget(&run, &coarse);
+  choose(&run, "../../examples/validation/crossed", FINE, &fine);
+  ck_assert_int_eq(fine.levels[0], 0);
+  ck_assert_double_gt(fine.stiffness[1], 1.5 * soft);
+  forget(&run, &fine);
+}
+END_TEST
+
+START_TEST(the_scene_has_the_last_word) {
+  SceneRun run;
+  FemCompliance choice;
+  choose(&run, "../../examples/validation/crossed",
+         (const char *const[]){"contact.smooth=2", "contact.stiffness=1e9", NULL}, &choice);
+  ck_assert_int_eq(choice.levels[0], 2);
+  ck_assert_int_eq(choice.bounds[1], FEM_COMPLIANCE_SCENE);
+  ck_assert(choice.stiffness[1] == 1e9);
+  forget(&run, &choice);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("compliance");
+  tcase_add_test(tests, bodies_of_flat_faces_are_pressed_by_their_heights);
+  tcase_add_test(tests, a_shaft_in_a_hole_is_no_stiffer_than_its_elements);
+  tcase_add_test(tests, fewer_elements_in_a_patch_are_halved_more);
+  tcase_add_test(tests, the_scene_has_the_last_word);
+  return suite_run("compliance", tests, 60);
+}
