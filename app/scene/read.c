@@ -47,6 +47,8 @@ static void keep_place(const SceneSection *section, const SceneNode *node, void 
     *(FemScenePlace *)field_of(self, section->place_offset) = (FemScenePlace){node->line, node->column};
 }
 
+static Status read_entry(const SceneKey *key, const SceneNode *node, void *self);
+
 // A section in its place, which a scalar may stand for.
 static Status read_subsection(const SceneKey *key, const SceneNode *node, void *field) {
   const SceneSection *section = key->section;
@@ -63,7 +65,7 @@ static Status read_subsection(const SceneKey *key, const SceneNode *node, void *
     return app_scene_value_fail(key, node, hint);
   }
   keep_place(section, node, field);
-  return read_value(meant, node, field);
+  return read_entry(meant, node, field);
 }
 
 static Status read_value(const SceneKey *key, const SceneNode *node, void *self) {

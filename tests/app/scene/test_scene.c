@@ -524,8 +524,20 @@ START_TEST(an_override_turns_contact_off_and_on) {
 }
 END_TEST
 
+// As a formula alone it says which kind it is, too.
+START_TEST(a_law_may_be_a_formula_alone) {
+  FemSceneDef scene;
+  const char *const overrides[] = {"contact.law=2e9*d + 4e13*d^2"};
+  ck_assert_ok(app_scene_read(full_yaml, overrides, 1, &scene));
+  ck_assert_int_eq(scene.contact.law.law.kind, CONTACT_LAW_FORMULA);
+  ck_assert_double_eq(expression_eval(scene.contact.law.law.formula, 1).value, 2e9 + 4e13);
+  fem_scene_destroy(&scene);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("scene");
+  tcase_add_test(cases, a_law_may_be_a_formula_alone);
   tcase_add_test(cases, a_scene_with_every_key_is_read);
   tcase_add_test(cases, json_means_the_same);
   tcase_add_test(cases, absent_keys_take_their_defaults);
