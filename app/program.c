@@ -17,19 +17,15 @@
 #include "base/text.h"
 
 static const AppCommand *const commands[] = {
-    &app_command_run,        &app_command_resume,
-    &app_command_compare,    &app_command_sweep,
-    &app_command_report,     &app_command_view,
-    &app_command_render,     &app_command_plot,
-    &app_command_check,      &app_command_mesh,
-    &app_command_schema,     &app_command_effects,
-    &app_command_devices,    &app_bench_bench,
-    &app_command_overlap,    &app_command_datagen,
-    &app_command_dataset,    &app_command_train,
-    &app_command_eval,       &app_command_weights,
-    &app_command_poses,      &app_command_stress,
-    &app_command_completion, &app_command_version,
-    &app_command_help,       NULL,
+    &app_command_run,     &app_command_resume,  &app_command_compare,
+    &app_command_sweep,   &app_command_report,  &app_command_view,
+    &app_command_render,  &app_command_plot,    &app_command_check,
+    &app_command_mesh,    &app_command_schema,  &app_command_effects,
+    &app_command_devices, &app_bench_bench,     &app_command_overlap,
+    &app_command_datagen, &app_command_dataset, &app_command_train,
+    &app_command_eval,    &app_command_weights, &app_command_poses,
+    &app_command_stress,  &app_command_verdict, &app_command_completion,
+    &app_command_version, &app_command_help,    NULL,
 };
 
 const AppCommand app_program_root = {

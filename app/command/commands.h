@@ -35,6 +35,7 @@ extern const AppCommand app_command_view;
 // app/command/overlap
 extern const AppCommand app_command_overlap;
 extern const AppCommand app_command_poses;
+extern const AppCommand app_command_verdict;
 
 // app/command/scene
 extern const AppCommand app_command_check;
