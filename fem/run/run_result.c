@@ -152,6 +152,16 @@ void fem_run_describe_trouble(const FemRunResult *result, const FemModel *model,
     append_trouble(text, size, &used, "pairs beyond the network's training", place,
                    "try contact.overlap: clip");
   }
+  const FemStability *stability = &result->equilibrium.stability;
+  if (stability->unstable > 0) {
+    char modes[64] = "";
+    if (stability->most > 0) snprintf(modes, sizeof modes, ", up to %lld negative pivots", stability->most);
+    snprintf(place, sizeof place, "a limit or a bifurcation between t = %.6g and %.6g s; %lld in all%s",
+             stability->stable_until, stability->unstable_from, stability->unstable, modes);
+    append_trouble(text, size, &used, "unstable equilibria", place,
+                   "what follows is a way that a real body leaves: disturb it by a small force, or run it "
+                   "without time.static");
+  }
   if (used == 0) append_line(text, size, &used, "none");
 }
 
@@ -291,6 +301,11 @@ void fem_run_summarise(const FemRunResult *result, Record *summary) {
     record_integer(equilibrium, "relaxation_steps", result->equilibrium.relaxation_steps);
     record_integer(equilibrium, "halvings", result->equilibrium.halvings);
     record_integer(equilibrium, "loose", result->equilibrium.loose);
+    const FemStability *stability = &result->equilibrium.stability;
+    record_integer(equilibrium, "unstable", stability->unstable);
+    record_integer(equilibrium, "negative_pivots", stability->most);
+    record_number(equilibrium, "stable_until_s", stability->unstable ? stability->stable_until : NAN);
+    record_number(equilibrium, "unstable_from_s", stability->unstable ? stability->unstable_from : NAN);
   }
   if (result->status.is_asked) summarise_status(&result->status.pairs, record_child(summary, "status"));
   record_integer(summary, "peak_rss_bytes", (long long)result->cost.peak_rss_bytes);

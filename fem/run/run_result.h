@@ -7,6 +7,7 @@
 #include "contact/evaluation.h"
 #include "contact/status.h"
 #include "fem/output/trouble.h"
+#include "fem/statics/statics.h"
 #include "fem/time/audit.h"
 #include "fem/time/integrator.h"
 
@@ -60,6 +61,7 @@ typedef struct FemRunMomentum {
 typedef struct FemRunEquilibrium {
   double residual, residual_allowed; // largest force on an unknown [N]
   long long relaxation_steps, halvings, loose;
+  FemStability stability;
 } FemRunEquilibrium;
 
 typedef struct FemRunContact {

@@ -38,6 +38,13 @@ Status fem_run_stage_begin(FemRunState *run, double step) {
   return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
 }
 
+static void add_stability(FemStability *total, const FemStability *part) {
+  if (part->unstable == 0) return;
+  if (total->unstable == 0) *total = (FemStability){0, part->most, part->stable_until, part->unstable_from};
+  total->unstable += part->unstable;
+  if (part->most > total->most) total->most = part->most;
+}
+
 void fem_run_stage_end(FemRunState *run) {
   FemRunResult *result = run->result;
   const FemStatics *statics = &run->statics;
@@ -52,6 +59,7 @@ void fem_run_stage_end(FemRunState *run) {
     result->equilibrium.relaxation_steps += statics->relaxation_steps;
     result->equilibrium.halvings += statics->halvings;
     result->equilibrium.loose += statics->loose;
+    add_stability(&result->equilibrium.stability, &statics->stability);
   }
   fem_integrator_destroy(run->integrator);
   run->integrator = NULL;

@@ -55,9 +55,13 @@ typedef struct FemSolverOps {
   // Optional, of iterative solvers whose tolerance the scene does not say: that of the solves to come, at
   // least the solver's own, as far as Newton's method needs it. 0: its own again.
   void (*aim)(void *self, double tolerance);
-  // Optional, before the first analysis, of a solver without a tolerance: its solutions need not be exact from
-  // now on, since they serve as a preconditioner. They are then symmetric and positive definite maps of b.
+  // Optional, before the first analysis, of a solver without a tolerance: its solutions need not be exact
+  // from now on, since they serve as a preconditioner. They are then symmetric and positive definite maps of
+  // b.
   void (*be_rough)(void *self);
+  // Optional, of a condensed solver in one process: how many eigenvalues of a symmetric matrix are negative,
+  // by the signs of the pivots of L D Lᵀ (Sylvester). It leaves the factor alone. RETRY: a pivot is zero.
+  Status (*count_negative)(const FemMatrix *matrix, int *count);
   // Optional: what was kept for the numbers to come is dropped; the next factorise begins from nothing.
   void (*forget)(void *self);
   void (*destroy)(void *self);

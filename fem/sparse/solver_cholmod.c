@@ -244,6 +244,43 @@ static Status solve(void *self, const double *b, double *x) {
   return STATUS_OK;
 }
 
+// Without exchanges of rows, as CHOLMOD factorises: signs are right as long as no pivot is near zero.
+static Status count_pivots(const FemMatrix *matrix, cholmod_common *common, int *count) {
+  cholmod_sparse lower = {.nrow = (size_t)matrix->size,
+                          .ncol = (size_t)matrix->size,
+                          .nzmax = (size_t)matrix->entry_count,
+                          .p = matrix->col_begin,
+                          .i = matrix->row,
+                          .x = matrix->value,
+                          .stype = -1,
+                          .itype = CHOLMOD_INT,
+                          .xtype = CHOLMOD_REAL,
+                          .dtype = CHOLMOD_DOUBLE,
+                          .sorted = 1,
+                          .packed = 1};
+  cholmod_factor *factor = cholmod_analyze(&lower, common);
+  bool is_made = factor && cholmod_factorize(&lower, factor, common) && common->status == CHOLMOD_OK;
+  *count = 0;
+  for (int j = 0; j < matrix->size && is_made; j++)
+    *count += ((const double *)factor->x)[((const int *)factor->p)[j]] < 0;
+  cholmod_free_factor(&factor, common);
+  return is_made ? STATUS_OK : status_fail(STATUS_RETRY, "the pivots of the matrix cannot be counted");
+}
+
+static Status count_negative(const FemMatrix *matrix, int *count) {
+  cholmod_common common;
+  cholmod_start(&common);
+  common.print = 0;
+  common.error_handler = NULL;
+  common.supernodal = CHOLMOD_SIMPLICIAL;
+  common.final_ll = 0;
+  common.nmethods = 1;
+  common.method[0].ordering = CHOLMOD_AMD;
+  Status status = count_pivots(matrix, &common, count);
+  cholmod_finish(&common);
+  return status;
+}
+
 static void be_rough(void *self) {
   ((CholmodSolver *)self)->is_rough = true;
 }
@@ -261,6 +298,7 @@ const FemSolverOps fem_solver_cholmod = {
     .factorise = factorise,
     .solve = solve,
     .be_rough = be_rough,
+    .count_negative = count_negative,
     .destroy = destroy,
     .stats = stats,
 };

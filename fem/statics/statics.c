@@ -251,6 +251,27 @@ Status fem_statics_continue(FemStatics *statics, double time, const double *u, d
   return STATUS_OK;
 }
 
+// The sign of K's eigenvalues at the equilibrium that was found last.
+static Status watch_stability(FemStatics *statics, double from, double to, const double *u) {
+  FemEquilibrium *equilibrium = &statics->equilibrium;
+  FemStability *stability = &statics->stability;
+  long long failures = equilibrium->ops->stats(equilibrium->solver)->failed_factorisations;
+  bool is_doubtful = failures > statics->failures;
+  if (is_doubtful) {
+    Status status = fem_equilibrium_factorise(equilibrium, to, u, 0);
+    if (status < 0) return status;
+    int count = -1;
+    if (status == STATUS_RETRY) {
+      if (equilibrium->ops->count_negative)
+        (void)equilibrium->ops->count_negative(&equilibrium->system->matrix, &count);
+      if (stability->unstable++ == 0) stability->stable_until = from, stability->unstable_from = to;
+      if (count > stability->most || stability->unstable == 1) stability->most = count;
+    }
+  }
+  statics->failures = equilibrium->ops->stats(equilibrium->solver)->failed_factorisations;
+  return STATUS_OK;
+}
+
 Status fem_statics_step(FemStatics *statics, double from, double to, double *u) {
   FemEquilibrium *equilibrium = &statics->equilibrium;
   int n = equilibrium->system->numbering.count;
@@ -261,6 +282,7 @@ Status fem_statics_step(FemStatics *statics, double from, double to, double *u) 
     statics->steps++;
     statics->loose += statics->residual > statics->tolerance * statics->force_scale;
     keep_work(statics, to);
+    TRY(watch_stability(statics, from, to, u));
     return fem_system_accept(equilibrium->system, equilibrium->state, 0);
   }
   memcpy(u, statics->start, (size_t)n * sizeof *u);

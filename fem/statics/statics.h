@@ -16,6 +16,15 @@
 
 #include "fem/statics/equilibrium.h"
 
+// Equilibria whose tangent K has negative eigenvalues: they are unstable, and before the first of them the
+// way has passed a limit or a bifurcation. Looked for where Newton's method has met a K that is not positive
+// definite.
+typedef struct FemStability {
+  long long unstable;                 // steps that ended in such a one
+  long long most;                     // negative eigenvalues of one; −1: not counted
+  double stable_until, unstable_from; // the last stable one's time before the first [s]; none: 0
+} FemStability;
+
 typedef struct FemStatics {
   FemEquilibrium equilibrium;
   double tolerance;             // largest force on an unknown in equilibrium, over the largest force met
@@ -29,7 +38,9 @@ typedef struct FemStatics {
   double work_left;                   // of the unbalanced forces, along the longest driven displacement [J]
   double residual;                    // largest force on an unknown at the end of the last step [N]
   long long steps, newton_iterations, relaxation_steps, halvings;
-  long long loose; // steps whose unbalanced forces were only tolerable (descent.h)
+  FemStability stability;
+  long long failures; // of factorisations, until the last step
+  long long loose;    // steps whose unbalanced forces were only tolerable (descent.h)
 } FemStatics;
 
 // `system` is borrowed, and `state`, which each evaluation fills; after a step it is the equilibrium.

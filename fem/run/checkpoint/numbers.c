@@ -85,6 +85,10 @@ static const FemCheckpointNumber numbers[] = {
     COUNT(equilibrium, relaxation_steps),
     COUNT(equilibrium, halvings),
     COUNT(equilibrium, loose),
+    PART(equilibrium, stability.unstable, FEM_LONG, "1"),
+    PART(equilibrium, stability.most, FEM_LONG, "1"),
+    PART(equilibrium, stability.stable_until, FEM_REAL, "s"),
+    PART(equilibrium, stability.unstable_from, FEM_REAL, "s"),
     PART(equilibrium, residual, FEM_REAL, "N"),
     PART(equilibrium, residual_allowed, FEM_REAL, "N"),
     COUNT(contact, pairs.tried),
@@ -134,7 +138,7 @@ static_assert(sizeof(ContactStatusCounts) == 4 * sizeof(long long),
               "numbers[] lists the counts of the status");
 
 static_assert(sizeof(FemRunRetries) == 3 * sizeof(long long), "numbers[] lists every kind of retry");
-static_assert(sizeof(FemRunEquilibrium) == 5 * sizeof(double), "numbers[] lists the equilibrium's numbers");
+static_assert(sizeof(FemRunEquilibrium) == 9 * sizeof(double), "numbers[] lists the equilibrium's numbers");
 
 static_assert(FEM_TROUBLE_KIND_COUNT == 5, "numbers[] lists every kind of trouble");
 
