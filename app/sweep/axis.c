@@ -161,6 +161,31 @@ Status app_sweep_axis_parse(AppSweepAxis *axis, const char *text) {
   return status;
 }
 
+static Status parse_next(AppSweepAxis *axes, int most, int *count, const char *text, int first) {
+  if (*count == most) return fail(text, "too many keys");
+  TRY(app_sweep_axis_parse(&axes[*count], text));
+  AppSweepAxis *axis = &axes[(*count)++];
+  axis->is_linked = axis != &axes[first];
+  if (axis->value_count == axes[first].value_count) return STATUS_OK;
+  return status_fail(STATUS_USAGE,
+                     "--vary: '%s' has %d values and '%s', which changes with it, %d; give as many to both",
+                     axes[first].key, axes[first].value_count, axis->key, axis->value_count);
+}
+
+Status app_sweep_axis_parse_linked(AppSweepAxis *axes, int most, int *count, const char *text) {
+  static const char link[] = " with ";
+  Status status = STATUS_OK;
+  int first = *count;
+  while (text && !status) {
+    const char *end = strstr(text, link);
+    char *part = copy(text, end ? (size_t)(end - text) : strlen(text));
+    status = part ? parse_next(axes, most, count, part, first) : status_no_memory("the keys of --vary");
+    memory_free(part);
+    text = end ? end + sizeof link - 1 : NULL;
+  }
+  return status;
+}
+
 bool app_sweep_axis_locate(const AppSweepAxis *axis, int k, const char *scene_path, char path[PATH_MAX]) {
   char from[PATH_MAX], *folder = file_directory_of(scene_path);
   bool is_file = folder && overlap_source_from(axis->values[k], folder, from, sizeof from) &&

@@ -21,7 +21,7 @@
 int app_sweep_point_count(const AppSweepBase *base) {
   int count = base->repeat_count;
   for (int a = 0; a < base->axis_count && count <= APP_SWEEP_MAX_POINTS; a++)
-    count *= base->axes[a].value_count;
+    if (!base->axes[a].is_linked) count *= base->axes[a].value_count;
   return count;
 }
 
@@ -55,19 +55,29 @@ static void name_folder(AppSweepPoint *point, const AppSweepBase *base) {
   digest_print(digest, point->folder + length + 1);
 }
 
+// Returns the repeat.
+static int number_values(AppSweepPoint *point, const AppSweepBase *base, int index) {
+  for (int a = base->axis_count - 1; a >= 0; a--) {
+    if (base->axes[a].is_linked) continue;
+    point->values[a] = index % base->axes[a].value_count;
+    index /= base->axes[a].value_count;
+    for (int b = a + 1; b < base->axis_count && base->axes[b].is_linked; b++)
+      point->values[b] = point->values[a];
+  }
+  return index;
+}
+
 Status app_sweep_point_create(AppSweepPoint *point, const AppSweepBase *base, int index) {
   *point = (AppSweepPoint){0};
-  for (int a = base->axis_count - 1; a >= 0; a--) {
+  point->repeat = number_values(point, base, index);
+  for (int a = 0; a < base->axis_count; a++) {
     const AppSweepAxis *axis = &base->axes[a];
-    point->values[a] = index % axis->value_count;
-    index /= axis->value_count;
     const char *value = axis->values[point->values[a]];
     size_t size = strlen(axis->key) + strlen(value) + 2;
     point->settings[a] = memory_zeroed(size, 1);
     if (!point->settings[a]) return status_no_memory("the points of a sweep");
     snprintf(point->settings[a], size, "%s=%s", axis->key, value);
   }
-  point->repeat = index;
   name_folder(point, base);
   point->directory = file_join(base->directory, point->folder);
   return point->directory ? STATUS_OK : status_no_memory("the points of a sweep");

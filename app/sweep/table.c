@@ -118,9 +118,12 @@ static void record_files(const AppSweepAxis *axis, const char *scene_path, Recor
 
 static void record_axes(const AppSweepGrid *grid, Record *record) {
   RecordList *list = record_list(record, "axes");
+  RecordList *linked = NULL;
   for (int a = 0; a < grid->base.axis_count; a++) {
     const AppSweepAxis *axis = &grid->base.axes[a];
-    Record *row = record_append(list);
+    bool has_linked = a + 1 < grid->base.axis_count && axis[1].is_linked;
+    Record *row = record_append(axis->is_linked ? linked : list);
+    if (!axis->is_linked) linked = has_linked ? record_list(row, "with") : NULL;
     record_text(row, "key", axis->key);
     RecordList *values = record_list(row, "values");
     for (int k = 0; k < axis->value_count; k++) record_append_text(values, app_sweep_axis_name(axis, k));

@@ -11,6 +11,7 @@
 
 #include "app/sweep/axis.h"
 #include "app/sweep/history.h"
+#include "app/sweep/point.h"
 #include "base/files/file.h"
 #include "base/files/record.h"
 #include "base/memory.h"
@@ -35,6 +36,32 @@ START_TEST(ranges_have_both_ends_and_lists_their_words) {
   expect_values("v=[0, 1],\"a,b\",{x: 1, y: 2}", "v", 3,
                 (const char *const[]){"[0, 1]", "\"a,b\"", "{x: 1, y: 2}"});
   expect_values("mesh=../a..b.msh", "mesh", 1, (const char *const[]){"../a..b.msh"});
+}
+END_TEST
+
+// Two keys that change together and a third: 2 × 3 points, not 2 × 2 × 3.
+START_TEST(linked_keys_change_together) {
+  AppSweepBase base = {.scene_path = "s.yaml", .directory = "out", .repeat_count = 1};
+  ck_assert_ok(app_sweep_axis_parse_linked(base.axes, APP_SWEEP_MAX_AXES, &base.axis_count,
+                                           "a.cells=2,4 with b.cells=3,6"));
+  ck_assert_ok(app_sweep_axis_parse_linked(base.axes, APP_SWEEP_MAX_AXES, &base.axis_count, "c=1..3:3"));
+  ck_assert_int_eq(base.axis_count, 3);
+  ck_assert_int_eq(app_sweep_point_count(&base), 6);
+  for (int p = 0; p < 6; p++) {
+    AppSweepPoint point;
+    ck_assert_ok(app_sweep_point_create(&point, &base, p));
+    ck_assert_str_eq(point.settings[0], p < 3 ? "a.cells=2" : "a.cells=4");
+    ck_assert_str_eq(point.settings[1], p < 3 ? "b.cells=3" : "b.cells=6");
+    ck_assert_int_eq(point.settings[2][2], '1' + p % 3);
+    app_sweep_point_destroy(&point);
+  }
+  for (int a = 0; a < base.axis_count; a++) app_sweep_axis_destroy(&base.axes[a]);
+  base.axis_count = 0;
+  ck_assert_int_eq(
+      app_sweep_axis_parse_linked(base.axes, APP_SWEEP_MAX_AXES, &base.axis_count, "a=1,2,3 with b=1,2"),
+      STATUS_USAGE);
+  ck_assert_ptr_nonnull(strstr(status_message(), "'a' has 3 values and 'b', which changes with it, 2"));
+  for (int a = 0; a < base.axis_count; a++) app_sweep_axis_destroy(&base.axes[a]);
 }
 END_TEST
 
@@ -400,6 +427,7 @@ END_TEST
 int main(void) {
   TCase *cases = tcase_create("sweep");
   tcase_add_checked_fixture(cases, folder_make, folder_remove);
+  tcase_add_test(cases, linked_keys_change_together);
   tcase_add_test(cases, ranges_have_both_ends_and_lists_their_words);
   tcase_add_test(cases, an_axis_that_makes_no_sense_is_a_usage_error);
   tcase_add_test(cases, runs_are_rows_and_one_that_fails_is_a_row_too);

@@ -25,7 +25,7 @@ typedef struct Options {
 static const AppOption option_table[] = {
     {"vary", 'V', "KEY=VALUES",
      "Take these values of a key: LOW..HIGH:COUNT, LOW..HIGH:COUNT,log or A,B,C; may be repeated: every "
-     "value with every other",
+     "value with every other; 'KEY=VALUES with KEY=VALUES': both change together",
      1, CLI_REPEATED, CLI_TO(Options, axes), .most = APP_SWEEP_MAX_AXES, .example = "--vary",
      .count_offset = offsetof(Options, axis_count)},
     {"set", 's', "KEY=VALUE", "Replace a value of the scene in all runs; may be repeated", 1, CLI_REPEATED,
@@ -50,8 +50,8 @@ static const AppOption option_table[] = {
 };
 
 static Status parse_axes(const Options *options, AppSweepBase *base) {
-  for (; base->axis_count < options->axis_count; base->axis_count++)
-    TRY(app_sweep_axis_parse(&base->axes[base->axis_count], options->axes[base->axis_count]));
+  for (int k = 0; k < options->axis_count; k++)
+    TRY(app_sweep_axis_parse_linked(base->axes, APP_SWEEP_MAX_AXES, &base->axis_count, options->axes[k]));
   return STATUS_OK;
 }
 
