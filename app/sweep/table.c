@@ -7,6 +7,7 @@
 
 #include "app/cli/versions.h"
 #include "app/report/report.h"
+#include "app/sweep/order.h"
 #include "base/files/file.h"
 #include "base/memory.h"
 #include "base/text.h"
@@ -131,6 +132,33 @@ static void record_axes(const AppSweepGrid *grid, Record *record) {
   }
 }
 
+// The observed order of the last contact force along the first axis with three values up to this point's;
+// NaN: there is none.
+static double order_of(const AppSweepGrid *grid, int p) {
+  const AppSweepBase *base = &grid->base;
+  int stride = app_sweep_point_count(base) / base->repeat_count;
+  for (int a = 0; a < base->axis_count; a++) {
+    const AppSweepAxis *axis = &base->axes[a];
+    if (axis->is_linked) continue;
+    stride /= axis->value_count;
+    int k = grid->points[p].values[a];
+    if (axis->value_count < 3) continue;
+    if (k < 2) return NAN;
+    const char *const values[3] = {axis->values[k - 2], axis->values[k - 1], axis->values[k]};
+    double force[3];
+    for (int i = 0; i < 3; i++)
+      force[i] = record_find_number(grid->points[p - (2 - i) * stride].summary, "contact_force_last");
+    return app_sweep_order_observed(values, force);
+  }
+  return NAN;
+}
+
+static bool has_orders(const AppSweepGrid *grid) {
+  for (int p = 0; p < grid->point_count; p++)
+    if (isfinite(order_of(grid, p))) return true;
+  return false;
+}
+
 static void record_point(const AppSweepGrid *grid, const AppSweepPoint *point, Record *row) {
   record_text(row, "folder", point->folder);
   Record *set = record_child(row, "set");
@@ -181,11 +209,11 @@ Record *app_sweep_table_record(const AppSweepGrid *grid) {
 typedef struct Row {
   const char *folder, *name, *outcome, *message, *values[APP_SWEEP_MAX_AXES];
   char text[1024]; // that `name` points to
-  double repeat, spread, numbers[COLUMN_COUNT];
+  double repeat, spread, order, numbers[COLUMN_COUNT];
 } Row;
 
 typedef struct Columns {
-  AppTableColumn columns[APP_SWEEP_MAX_AXES + COLUMN_COUNT + 6];
+  AppTableColumn columns[APP_SWEEP_MAX_AXES + COLUMN_COUNT + 7];
   int count;
 } Columns;
 
@@ -222,7 +250,8 @@ static void fill_row(const AppSweepGrid *grid, const AppSweepPoint *point, Row *
                .outcome = outcome_of(point),
                .message = point->message,
                .repeat = point->repeat + 1,
-               .spread = NAN};
+               .spread = NAN,
+               .order = order_of(grid, (int)(point - grid->points))};
   for (int a = 0; a < grid->base.axis_count; a++) row->values[a] = value_text(grid, point, a);
   for (int c = 0; c < COLUMN_COUNT; c++) row->numbers[c] = value_of(point, &columns[c]);
   name_row(grid, point, row->text, sizeof row->text);
@@ -247,6 +276,7 @@ static Status print_csv(const AppSweepGrid *grid, FILE *stream) {
   if (grid->base.repeat_count > 1) add_column(&list, "repeat", APP_TABLE_COUNT, offsetof(Row, repeat), NULL);
   add_column(&list, "outcome", APP_TABLE_TEXT, offsetof(Row, outcome), NULL);
   add_numbers(&list, false, false);
+  if (has_orders(grid)) add_column(&list, "order", APP_TABLE_NUMBER, offsetof(Row, order), NULL);
   add_column(&list, "message", APP_TABLE_TEXT, offsetof(Row, message), NULL);
   Status status = print_rows(&list, rows, grid->point_count, APP_TABLE_CSV, stream);
   memory_free(rows);
@@ -335,6 +365,7 @@ Status app_sweep_table_print(const AppSweepGrid *grid, AppTableFormat format, FI
   add_column(&list, "run", APP_TABLE_TEXT, offsetof(Row, name), "run");
   add_column(&list, "outcome", APP_TABLE_TEXT, offsetof(Row, outcome), "outcome");
   add_numbers(&list, true, grid->base.repeat_count > 1);
+  if (has_orders(grid)) add_column(&list, "order", APP_TABLE_NUMBER, offsetof(Row, order), "order");
   add_column(&list, "message", APP_TABLE_TEXT, offsetof(Row, message), "");
   Status status = print_rows(&list, rows, count, format, stream);
   memory_free(rows);

@@ -11,6 +11,7 @@
 
 #include "app/sweep/axis.h"
 #include "app/sweep/history.h"
+#include "app/sweep/order.h"
 #include "app/sweep/point.h"
 #include "base/files/file.h"
 #include "base/files/record.h"
@@ -62,6 +63,19 @@ START_TEST(linked_keys_change_together) {
       STATUS_USAGE);
   ck_assert_ptr_nonnull(strstr(status_message(), "'a' has 3 values and 'b', which changes with it, 2"));
   for (int a = 0; a < base.axis_count; a++) app_sweep_axis_destroy(&base.axes[a]);
+}
+END_TEST
+
+// f = 1 + 3 h², h = 1/n.
+START_TEST(the_observed_order_of_a_quadratic_error_is_two) {
+  const double f[3] = {1 + 3.0 / 4, 1 + 3.0 / 16, 1 + 3.0 / 64}, turns[3] = {1, 2, 1.5};
+  const char *const finer[] = {"2", "4", "8"}, *const smaller[] = {"1e-2", "5e-3", "2.5e-3"};
+  const char *const uneven[] = {"2", "4", "9"}, *const words[] = {"clip", "geo", "exact"};
+  ck_assert_near(app_sweep_order_observed(finer, f), 2, 1e-12);
+  ck_assert_near(app_sweep_order_observed(smaller, f), 2, 1e-12);
+  ck_assert(isnan(app_sweep_order_observed(finer, turns)));
+  ck_assert(isnan(app_sweep_order_observed(uneven, f)));
+  ck_assert(isnan(app_sweep_order_observed(words, f)));
 }
 END_TEST
 
@@ -428,6 +442,7 @@ int main(void) {
   TCase *cases = tcase_create("sweep");
   tcase_add_checked_fixture(cases, folder_make, folder_remove);
   tcase_add_test(cases, linked_keys_change_together);
+  tcase_add_test(cases, the_observed_order_of_a_quadratic_error_is_two);
   tcase_add_test(cases, ranges_have_both_ends_and_lists_their_words);
   tcase_add_test(cases, an_axis_that_makes_no_sense_is_a_usage_error);
   tcase_add_test(cases, runs_are_rows_and_one_that_fails_is_a_row_too);
