@@ -86,11 +86,13 @@ int app_program_run(const AppCommand *root, int argument_count, char **arguments
   return flush_output(app_cli_command_run(root, argument_count, arguments));
 }
 
-// Threads that wait shall sleep: on a machine that others use too, spinning ones held a matrix product of 20
-// k vertices for 17 ms instead of 2.4 ms. libgomp reads the policy before main, so the program starts itself
-// once more; only for commands that have threads, since a start takes a hundredth of a second.
+// Threads that wait shall sleep soon: on a machine that others use too, spinning ones held a matrix product of 20
+// k vertices for 17 ms instead of 2.4 ms. Sleeping at once costs a tenth of a run on two cores, so they spin some
+// microseconds. libgomp reads this before main, so the program starts itself once more; only for commands that
+// have threads, since a start takes a hundredth of a second.
 static void let_threads_sleep(char **arguments) {
-  if (getenv("OMP_WAIT_POLICY") || setenv("OMP_WAIT_POLICY", "passive", 1) != 0) return;
+  bool is_set = getenv("OMP_WAIT_POLICY") || setenv("OMP_WAIT_POLICY", "passive", 1) != 0;
+  if (is_set || setenv("GOMP_SPINCOUNT", "5000", 0) != 0) return;
   execv("/proc/self/exe", arguments); // where that fails, the run is only slower
 }
 

@@ -8,8 +8,14 @@
 
 #include "base/memory.h"
 
-// Below this many unknowns a product is done before a team of threads has started.
-enum { PARALLEL_SIZE = 4000 };
+// Entries of a piece of a product: a quarter of a megabyte to be read. A matrix with fewer is one piece.
+enum { PIECE_SIZE = 32768 };
+
+// Rows of a vertex that an earlier piece of a product has added to.
+typedef struct FemMatrixGift {
+  int from, to; // in `kept`, in y
+  int count;
+} FemMatrixGift;
 
 // Where the block of vertices (v, w), v < w, stands. Column c of v (c = 0 … active[v] − 1, counted over v's
 // own unknowns) holds
@@ -29,6 +35,15 @@ typedef struct FemMatrixBlocks {
   int *below_begin;    // the same blocks by w: of w in below and below_offset   (vertex_count + 1)
   int *below;          // v < w, ascending                                       (block_count)
   int *below_offset;   // row_offset of the block                                (block_count)
+  // Products are formed by pieces of consecutive vertices, which the layout alone determines. A piece writes
+  // its own rows and keeps what it has for later ones beside, to be added in the order of the pieces.
+  int piece_count;
+  int *piece_begin; // first vertex                                              (piece_count + 1)
+  int *target;      // of each block: where w's rows are in y; ~ in `kept`       (block_count)
+  int *gift_begin;  // of each piece in gifts: what earlier ones have for it     (piece_count + 1)
+  FemMatrixGift *gifts;
+  double *kept;    // (kept_begin[piece_count])
+  int *kept_begin; // of each piece                                              (piece_count + 1)
 } FemMatrixBlocks;
 
 static atomic_llong layout_count;
@@ -39,6 +54,8 @@ static void release_blocks(FemMatrixBlocks *blocks) {
   memory_free(blocks->first), memory_free(blocks->active);
   memory_free(blocks->above_begin), memory_free(blocks->above), memory_free(blocks->row_offset);
   memory_free(blocks->below_begin), memory_free(blocks->below), memory_free(blocks->below_offset);
+  memory_free(blocks->piece_begin), memory_free(blocks->target), memory_free(blocks->gift_begin);
+  memory_free(blocks->gifts), memory_free(blocks->kept), memory_free(blocks->kept_begin);
   memory_free(blocks);
 }
 
@@ -159,12 +176,100 @@ static Status lay_entries(FemMatrix *matrix, size_t entry_count) {
   return STATUS_OK;
 }
 
+static void cut_pieces(FemMatrix *matrix) {
+  FemMatrixBlocks *blocks = matrix->blocks;
+  int begin = 0; // entry
+  for (int v = 0; v < matrix->vertex_count; v++) {
+    int end = blocks->col_begin[blocks->first[v] + blocks->active[v]];
+    if (end - begin < PIECE_SIZE && v + 1 < matrix->vertex_count) continue;
+    blocks->piece_begin[++blocks->piece_count] = v + 1;
+    begin = end;
+  }
+}
+
+// `target`, and how much a piece keeps for each later vertex: all of its rows, once.
+static void place_targets(FemMatrix *matrix, int *piece_of, int *slot, int *gift_count) {
+  FemMatrixBlocks *blocks = matrix->blocks;
+  int end = 0;
+  for (int v = 0; v < matrix->vertex_count; v++) slot[v] = -1;
+  for (int p = 0; p < blocks->piece_count; p++) {
+    int first = end;
+    blocks->kept_begin[p] = end;
+    for (int v = blocks->piece_begin[p]; v < blocks->piece_begin[p + 1]; v++)
+      for (int b = blocks->above_begin[v]; b < blocks->above_begin[v + 1]; b++) {
+        int w = blocks->above[b];
+        if (w < blocks->piece_begin[p + 1]) {
+          blocks->target[b] = blocks->first[w];
+          continue;
+        }
+        if (slot[w] < first) {
+          slot[w] = end;
+          end += blocks->active[w];
+          gift_count[piece_of[w] + 1]++;
+        }
+        blocks->target[b] = ~slot[w];
+      }
+  }
+  blocks->kept_begin[blocks->piece_count] = end;
+}
+
+// Once each, in the order of the pieces that give.
+static void list_gifts(FemMatrix *matrix, const int *piece_of, int *seen, int *next) {
+  FemMatrixBlocks *blocks = matrix->blocks;
+  for (int v = 0; v < matrix->vertex_count; v++) seen[v] = -1;
+  for (int p = 0; p < blocks->piece_count; p++)
+    for (int v = blocks->piece_begin[p]; v < blocks->piece_begin[p + 1]; v++)
+      for (int b = blocks->above_begin[v]; b < blocks->above_begin[v + 1]; b++) {
+        int w = blocks->above[b];
+        if (blocks->target[b] >= 0 || seen[w] == p) continue;
+        seen[w] = p;
+        blocks->gifts[next[piece_of[w]]++] =
+            (FemMatrixGift){~blocks->target[b], blocks->first[w], blocks->active[w]};
+      }
+}
+
+static Status make_gifts(FemMatrix *matrix, int *piece_of, int *scratch) {
+  FemMatrixBlocks *blocks = matrix->blocks;
+  for (int p = 0; p < blocks->piece_count; p++)
+    for (int v = blocks->piece_begin[p]; v < blocks->piece_begin[p + 1]; v++) piece_of[v] = p;
+  place_targets(matrix, piece_of, scratch, blocks->gift_begin);
+  for (int p = 0; p < blocks->piece_count; p++) blocks->gift_begin[p + 1] += blocks->gift_begin[p];
+  blocks->gifts = memory_zeroed((size_t)blocks->gift_begin[blocks->piece_count], sizeof *blocks->gifts);
+  blocks->kept = memory_zeroed((size_t)blocks->kept_begin[blocks->piece_count], sizeof *blocks->kept);
+  int *next = memory_copy(blocks->gift_begin, (size_t)blocks->piece_count + 1, sizeof *next);
+  bool fits = blocks->gifts && blocks->kept && next;
+  if (fits) list_gifts(matrix, piece_of, scratch, next);
+  memory_free(next);
+  return fits ? STATUS_OK : no_memory();
+}
+
+static Status divide_products(FemMatrix *matrix) {
+  FemMatrixBlocks *blocks = matrix->blocks;
+  size_t vertices = (size_t)matrix->vertex_count, most = (size_t)matrix->entry_count / PIECE_SIZE + 2;
+  blocks->piece_begin = memory_zeroed(most, sizeof *blocks->piece_begin);
+  blocks->gift_begin = memory_zeroed(most, sizeof *blocks->gift_begin);
+  blocks->kept_begin = memory_zeroed(most, sizeof *blocks->kept_begin);
+  blocks->target = memory_zeroed((size_t)blocks->above_begin[vertices], sizeof *blocks->target);
+  int *piece_of = memory_zeroed(vertices, sizeof *piece_of),
+      *scratch = memory_zeroed(vertices, sizeof *scratch);
+  bool fits = blocks->piece_begin && blocks->gift_begin && blocks->kept_begin && blocks->target && piece_of &&
+              scratch;
+  Status status = STATUS_OK;
+  if (fits) {
+    cut_pieces(matrix);
+    status = make_gifts(matrix, piece_of, scratch);
+  }
+  memory_free(piece_of), memory_free(scratch);
+  return fits ? status : no_memory();
+}
+
 static Status lay_out(FemMatrix *matrix, const FemPattern *pattern) {
   size_t entry_count = 0;
   TRY(number_vertices(matrix));
   TRY(lay_blocks(matrix, pattern, &entry_count));
   TRY(transpose_blocks(matrix));
-  return lay_entries(matrix, entry_count);
+  TRY(lay_entries(matrix, entry_count));
+  return divide_products(matrix);
 }
 
 Status fem_matrix_create(FemMatrix *matrix, const FemPattern *pattern, const int *unknown_of_dof) {
@@ -327,32 +432,14 @@ void fem_matrix_add_mass(FemMatrix *matrix, const double *mass, double scale) {
   }
 }
 
-// y of one vertex: its columns give what stands below (and on) the diagonal, the blocks with lower vertices
-// what stands before it.
-static void multiply_vertex(const FemMatrix *matrix, int w, const double *x, double *y) {
-  const FemMatrixBlocks *blocks = matrix->blocks;
-  int first = blocks->first[w], active = blocks->active[w];
-  double sum[3] = {0};
-  for (int c = 0; c < active; c++) {
-    int own = matrix->col_begin[first + c];
-    for (int r = c + 1; r < active; r++) sum[r] += matrix->value[own + r - c] * x[first + c];
-    for (int k = own; k < matrix->col_begin[first + c + 1]; k++)
-      sum[c] += matrix->value[k] * x[matrix->row[k]];
-  }
-  for (int b = blocks->below_begin[w]; b < blocks->below_begin[w + 1]; b++) {
-    int v = blocks->below[b];
-    for (int c = 0; c < blocks->active[v]; c++) {
-      const double *value = matrix->value + block_rows(blocks, v, c, blocks->below_offset[b]);
-      double x_c = x[blocks->first[v] + c];
-      for (int r = 0; r < active; r++) sum[r] += value[r] * x_c;
-    }
-  }
-  for (int c = 0; c < active; c++) y[first + c] = sum[c];
+// Where block k, of vertex w, is added to. `kept` NULL: rows of other pieces are not kept beside.
+static double *rows_of(const FemMatrixBlocks *blocks, int k, int w, double *y, double *kept) {
+  return kept && blocks->target[k] < 0 ? kept + ~blocks->target[k] : y + blocks->first[w];
 }
 
 // A vertex with three unknowns and its blocks with higher vertices, each number read once: it is that of two
 // entries.
-static void spread_vertex(const FemMatrix *matrix, int v, const double *x, double *y) {
+static void spread_vertex(const FemMatrix *matrix, int v, const double *x, double *y, double *kept) {
   const FemMatrixBlocks *blocks = matrix->blocks;
   const int first = blocks->first[v], *begin = matrix->col_begin + first;
   const double *a = matrix->value + begin[0], *b = matrix->value + begin[1], *c = matrix->value + begin[2];
@@ -364,7 +451,7 @@ static void spread_vertex(const FemMatrix *matrix, int v, const double *x, doubl
   for (int k = blocks->above_begin[v]; k < blocks->above_begin[v + 1]; k++) {
     const int w = blocks->above[k], count = blocks->active[w];
     const double *at = x + blocks->first[w];
-    double *to = y + blocks->first[w];
+    double *to = rows_of(blocks, k, w, y, kept);
     for (int r = 0; r < count; r++) {
       sum[0] += a[r] * at[r], sum[1] += b[r] * at[r], sum[2] += c[r] * at[r];
       to[r] += a[r] * own[0] + b[r] * own[1] + c[r] * own[2];
@@ -374,35 +461,67 @@ static void spread_vertex(const FemMatrix *matrix, int v, const double *x, doubl
   for (int r = 0; r < 3; r++) y[first + r] += sum[r];
 }
 
-// The same for any vertex, a column at a time.
-static void spread_columns(const FemMatrix *matrix, int v, const double *x, double *y) {
-  const FemMatrixBlocks *blocks = matrix->blocks;
-  for (int column = blocks->first[v]; column < blocks->first[v] + blocks->active[v]; column++) {
-    int begin = matrix->col_begin[column];
-    double sum = matrix->value[begin] * x[column];
-    for (int k = begin + 1; k < matrix->col_begin[column + 1]; k++) {
-      sum += matrix->value[k] * x[matrix->row[k]];
-      y[matrix->row[k]] += matrix->value[k] * x[column];
-    }
-    y[column] += sum;
+static void spread_own(const FemMatrix *matrix, int column, int end, const double *x, double *y) {
+  const double *value = matrix->value + matrix->col_begin[column];
+  y[column] += value[0] * x[column];
+  for (int r = column + 1; r < end; r++) {
+    y[column] += value[r - column] * x[r];
+    y[r] += value[r - column] * x[column];
   }
 }
 
-static void spread(const FemMatrix *matrix, int v, const double *x, double *y) {
+// The same for any vertex, a column at a time.
+static void spread_columns(const FemMatrix *matrix, int v, const double *x, double *y, double *kept) {
+  const FemMatrixBlocks *blocks = matrix->blocks;
+  const int first = blocks->first[v], end = first + blocks->active[v];
+  for (int column = first; column < end; column++) spread_own(matrix, column, end, x, y);
+  for (int k = blocks->above_begin[v]; k < blocks->above_begin[v + 1]; k++) {
+    const int w = blocks->above[k], count = blocks->active[w];
+    const double *at = x + blocks->first[w];
+    double *to = rows_of(blocks, k, w, y, kept);
+    for (int column = first; column < end; column++) {
+      const double *value = matrix->value + block_rows(blocks, v, column - first, blocks->row_offset[k]);
+      for (int r = 0; r < count; r++) {
+        y[column] += value[r] * at[r];
+        to[r] += value[r] * x[column];
+      }
+    }
+  }
+}
+
+static void spread(const FemMatrix *matrix, int v, const double *x, double *y, double *kept) {
   if (matrix->blocks->active[v] == 3)
-    spread_vertex(matrix, v, x, y);
+    spread_vertex(matrix, v, x, y, kept);
   else
-    spread_columns(matrix, v, x, y);
+    spread_columns(matrix, v, x, y, kept);
+}
+
+// The rows of piece p.
+static void spread_piece(const FemMatrix *matrix, int p, const double *x, double *y) {
+  const FemMatrixBlocks *blocks = matrix->blocks;
+  const int begin = blocks->piece_begin[p], end = blocks->piece_begin[p + 1], kept = blocks->kept_begin[p];
+  const int first = blocks->first[begin], last = blocks->first[end - 1] + blocks->active[end - 1];
+  memset(y + first, 0, (size_t)(last - first) * sizeof *y);
+  memset(blocks->kept + kept, 0, (size_t)(blocks->kept_begin[p + 1] - kept) * sizeof *y);
+  for (int v = begin; v < end; v++) spread(matrix, v, x, y, blocks->kept);
+}
+
+static void take_gifts(const FemMatrixBlocks *blocks, int p, double *y) {
+  for (int g = blocks->gift_begin[p]; g < blocks->gift_begin[p + 1]; g++) {
+    const FemMatrixGift *gift = &blocks->gifts[g];
+    for (int r = 0; r < gift->count; r++) y[gift->to + r] += blocks->kept[gift->from + r];
+  }
 }
 
 void fem_matrix_multiply(const FemMatrix *matrix, const double *x, double *y) {
-  if (matrix->size <= PARALLEL_SIZE) {
-    memset(y, 0, (size_t)matrix->size * sizeof *y);
-    for (int v = 0; v < matrix->vertex_count; v++) spread(matrix, v, x, y);
-    return;
+  const FemMatrixBlocks *blocks = matrix->blocks;
+#pragma omp parallel if (blocks->piece_count > 1)
+  {
+#pragma omp for schedule(static)
+    for (int p = 0; p < blocks->piece_count; p++) spread_piece(matrix, p, x, y);
+#pragma omp for schedule(static)
+    for (int p = 0; p < blocks->piece_count; p++) take_gifts(blocks, p, y);
   }
-#pragma omp parallel for schedule(static)
-  for (int w = 0; w < matrix->vertex_count; w++) multiply_vertex(matrix, w, x, y);
 }
 
 bool fem_matrix_is_coupled(const FemMatrix *matrix, int vertex) {
@@ -413,7 +532,7 @@ bool fem_matrix_is_coupled(const FemMatrix *matrix, int vertex) {
 
 void fem_matrix_add_product(const FemMatrix *matrix, int count, const int *vertices, const double *x,
                             double *y) {
-  for (int i = 0; i < count; i++) spread(matrix, vertices[i], x, y);
+  for (int i = 0; i < count; i++) spread(matrix, vertices[i], x, y, NULL);
 }
 
 // The entries of a row with columns of lower vertices.

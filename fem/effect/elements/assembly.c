@@ -5,9 +5,9 @@
 
 #include "base/memory.h"
 
-// Below this many elements one thread does it all: a colour is a barrier, and some thirty of them, on a
-// machine that others use too, take longer than the millisecond of work that a second thread would save.
-enum { FEW_FORCES = 60000, FEW_MATRICES = 16000 };
+// Below this many elements one thread does it all: a colour is a barrier, and some ten of them take as long as
+// the work that a second thread would save.
+enum { FEW_FORCES = 8000, FEW_MATRICES = 2000 };
 // A quadratic element is as much work as so many linear ones.
 enum { QUADRATIC_FORCES = 6, QUADRATIC_MATRICES = 16 };
 

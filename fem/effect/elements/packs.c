@@ -8,8 +8,9 @@
 
 #include "base/memory.h"
 
-// Elements of a chunk: some kilobytes of positions and forces, and work worth handing to a thread.
-enum { CHUNK_PACKS = 16, CHUNK = CHUNK_PACKS * FEM_LANES };
+// Elements of a chunk at most: positions and forces that a first-level cache holds, and work worth handing to a
+// thread. Fewer and larger chunks have fewer colours.
+enum { CHUNK_PACKS = 128, CHUNK = CHUNK_PACKS * FEM_LANES };
 // A chunk conflicts with fewer than this many others unless a vertex has thousands of elements.
 enum { COLOUR_WORDS = 8 };
 
@@ -95,13 +96,20 @@ static bool is_taken(const Order *order, const FemModelBody *body, bool (*takes)
   return !body->is_obstacle && is_quadratic == order->is_quadratic && (!takes || takes(body));
 }
 
+// Of the elements of a body in each of its chunks, whole packs.
+static int even_size(int count) {
+  int packs = (count + FEM_LANES - 1) / FEM_LANES, chunks = (packs + CHUNK_PACKS - 1) / CHUNK_PACKS;
+  return chunks > 0 ? (packs + chunks - 1) / chunks * FEM_LANES : CHUNK;
+}
+
 static void cut_chunks(Order *order, bool (*takes)(const FemModelBody *body)) {
   const FemModel *model = order->model;
   for (int b = 0; b < model->body_count; b++) {
     if (!is_taken(order, &model->bodies[b], takes)) continue;
     int first = order->count;
     place_body(order, &model->bodies[b]);
-    for (int at = first; at < order->count; at += CHUNK) {
+    int size = even_size(order->count - first);
+    for (int at = first; at < order->count; at += size) {
       order->body[order->chunk_count] = b;
       order->begin[order->chunk_count++] = at;
     }

@@ -9,7 +9,7 @@ enum { LANES = 4 };
 
 // The loops that read all of a factor, also for the instructions that most processors have.
 #if defined(__x86_64__) && !defined(__clang__)
-#define FASTEST __attribute__((target_clones("arch=haswell", "default")))
+#define FASTEST __attribute__((target_clones("avx2", "default")))
 #else
 #define FASTEST
 #endif
