@@ -25,6 +25,7 @@ typedef struct FemSystem {
   FemPattern *pattern;
   FemMatrix matrix;                       // S, or K for split use
   long long pattern_version;              // grows whenever matrix has been laid out anew
+  double layout_s;                        // that this took [s]
   FemState accepted;                      // the last accepted state
   FemEffectHistory next[FEM_MAX_EFFECTS]; // scratch of fem_system_accept
   double *forces;                         // scratch, and one more for how many ranks failed (vertex_count, 3)

@@ -18,6 +18,7 @@
 #include "fem/run/checkpoint/restart.h"
 #include "fem/run/checkpoint/run_checkpoint.h"
 #include "fem/run/rest/hold.h"
+#include "fem/run/run_clock.h"
 #include "fem/run/run_frames.h"
 #include "fem/run/run_load.h"
 #include "fem/run/run_stage.h"
@@ -201,15 +202,24 @@ static Status pass_checkpoint(FemRunState *run) {
   return STATUS_OK;
 }
 
+static Status equilibrate(FemRunState *run) {
+  FemRunSpan span = fem_run_clock_begin(run);
+  TRY(fem_run_load_advance(run));
+  fem_run_clock_end(run, span, &run->result->cost.phases.integration);
+  return STATUS_OK;
+}
+
 static Status march(FemRunState *run) {
   TRY(allocate_states(run));
+  FemRunSpan span = fem_run_clock_begin(run);
   TRY(begin_part(run));
+  fem_run_clock_end(run, span, &run->result->cost.phases.start);
   const FemSceneDef *scene = run->model->scene;
   run->stall = fem_stall_begin(run->time, scene->end, scene->end / scene->frames);
   TRY(fem_run_checkpoint_offer(run));
   while (!fem_run_state_has_ended(run)) {
     if (run->model->scene->is_static) {
-      TRY(fem_run_load_advance(run));
+      TRY(equilibrate(run));
     } else {
       if (run->time >= run->stage_end) TRY(fem_run_stage_change(run));
       TRY(run->integrator ? fem_run_step_advance(run) : sleep_on(run));

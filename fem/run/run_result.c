@@ -50,23 +50,36 @@ static void add_contact(FemRunResult *result, const ContactSystem *system) {
   const ContactCounters *counters = contact_system_counters(system);
   result->contact.is_on = true;
   result->contact.asks_model = contact_system_asks_model(system);
-  result->cost.phases.broad_phase += counters->broad_s;
-  result->cost.phases.overlap += counters->overlap_s;
-  result->cost.phases.contact += counters->force_s + counters->update_s;
   add_pairs(&result->contact.pairs, &counters->pairs);
+}
+
+void fem_run_result_add_phases(FemRunPhases *phases, const FemSystem *system) {
+  void *contact = fem_system_effect(system, &fem_effect_contact);
+  if (contact) {
+    const ContactCounters *counters = contact_system_counters(fem_effect_contact_system(contact));
+    phases->broad_phase += counters->broad_s;
+    phases->overlap += counters->overlap_s;
+    phases->contact += counters->force_s + counters->update_s;
+  }
+  for (int i = 0; i < system->effect_count; i++) {
+    const FemEffectCost *cost = &system->costs[i];
+    phases->assembly += cost->jacobian_s;
+    if (system->effects[i].self == contact) continue;
+    phases->forces += cost->force_s;
+    phases->contact += cost->prepare_s;
+  }
+  phases->layout += system->layout_s;
 }
 
 void fem_run_result_add_system(FemRunResult *result, const FemSystem *system) {
   void *contact = fem_system_effect(system, &fem_effect_contact);
   if (contact) add_contact(result, fem_effect_contact_system(contact));
+  fem_run_result_add_phases(&result->cost.phases, system);
   result->matrix.layouts += system->pattern_version;
   result->effect_count = system->effect_count;
   result->matrix.assemblies = 0;
   for (int i = 0; i < system->effect_count; i++) {
     const FemEffect *effect = &system->effects[i];
-    if (effect->self != contact) result->cost.phases.forces += system->costs[i].force_s;
-    result->cost.phases.assembly += system->costs[i].jacobian_s;
-    if (effect->self != contact) result->cost.phases.contact += system->costs[i].prepare_s;
     result->effects[i].name = effect->ops->name;
     add_cost(&result->effects[i].cost, &system->costs[i]);
     if (result->effects[i].cost.jacobian_calls > result->matrix.assemblies)
@@ -190,19 +203,28 @@ void fem_run_describe_statistics(const FemRunResult *result, char *text, size_t 
     if (rows[k].count > 0) append_line(text, size, &used, "%s: %lld", rows[k].what, rows[k].count);
 }
 
+double fem_run_result_named_s(const FemRunPhases *phases) {
+  return phases->start + phases->broad_phase + phases->overlap + phases->contact + phases->forces +
+         phases->layout + phases->assembly + phases->analysis + phases->factorisation + phases->solve +
+         phases->products + phases->integration + phases->measures + phases->output;
+}
+
 static void summarise_phases(const FemRunPhases *phases, Record *record) {
+  record_number(record, "start", phases->start);
   record_number(record, "broad_phase", phases->broad_phase);
   record_number(record, "overlap", phases->overlap);
   record_number(record, "contact", phases->contact);
   record_number(record, "forces", phases->forces);
+  record_number(record, "layout", phases->layout);
   record_number(record, "assembly", phases->assembly);
   record_number(record, "analysis", phases->analysis);
   record_number(record, "factorisation", phases->factorisation);
   record_number(record, "solve", phases->solve);
+  record_number(record, "products", phases->products);
+  record_number(record, "integration", phases->integration);
+  record_number(record, "measures", phases->measures);
   record_number(record, "output", phases->output);
-  double named = phases->broad_phase + phases->overlap + phases->contact + phases->forces + phases->assembly +
-                 phases->analysis + phases->factorisation + phases->solve + phases->output;
-  record_number(record, "other", phases->total - named);
+  record_number(record, "other", phases->total - fem_run_result_named_s(phases));
 }
 
 static void summarise_counters(const FemRunResult *result, Record *record) {

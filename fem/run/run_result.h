@@ -11,11 +11,13 @@
 #include "fem/time/audit.h"
 #include "fem/time/integrator.h"
 
-// `contact`: candidate lists, pressures and forces, without broad phase and overlap volumes.
-// What no phase names (the energy audit, the integrator's vectors) is the difference to the total.
-// All of them wall [s].
+// `contact`: candidate lists, pressures and forces, without broad phase and overlap volumes. `products`: of
+// the matrix, and vectors of conjugate gradients. `integration`: the integrator's vectors, Newton's method,
+// states under trial. `measures`: audits, momentum, trouble. What no phase names is the difference to the
+// total. All of them wall [s].
 typedef struct FemRunPhases {
-  double broad_phase, overlap, contact, forces, assembly, analysis, factorisation, solve, output, total;
+  double start, broad_phase, overlap, contact, forces, layout, assembly, analysis, factorisation, solve,
+      products, integration, measures, output, total;
 } FemRunPhases;
 
 enum { FEM_RUN_DESCRIBED_COUNT = 3, FEM_RUN_SPREAD_COUNT = 18 };
@@ -134,6 +136,8 @@ typedef struct FemRunResult {
 // Adds what a system and a solver have counted since they were made. `contact` of the phases is what effects
 // took to prepare, without the broad phase.
 void fem_run_result_add_system(FemRunResult *result, const FemSystem *system);
+void fem_run_result_add_phases(FemRunPhases *phases, const FemSystem *system);
+double fem_run_result_named_s(const FemRunPhases *phases); // the sum of all but the total
 void fem_run_result_add_integrator(FemIntegratorStats *total, const FemIntegratorStats *part);
 void fem_run_result_add_solver(FemSolverStats *total, const FemSolverStats *part);
 void fem_run_result_destroy(FemRunResult *result);

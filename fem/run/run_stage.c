@@ -49,8 +49,10 @@ void fem_run_stage_end(FemRunState *run) {
   FemRunResult *result = run->result;
   const FemStatics *statics = &run->statics;
   result->integrator = fem_run_state_stats(run);
-  if (run->integrator)
+  if (run->integrator) {
     fem_run_result_add_solver(&result->matrix.solver, fem_integrator_solver_stats(run->integrator));
+    result->cost.phases.products += fem_integrator_product_s(run->integrator);
+  }
   if (statics->equilibrium.solver) {
     fem_run_result_add_solver(&result->matrix.solver,
                               statics->equilibrium.ops->stats(statics->equilibrium.solver));

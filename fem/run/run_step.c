@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/log.h"
+#include "fem/run/run_clock.h"
 #include "fem/run/run_frames.h"
 #include "fem/run/run_stage.h"
 #include "fem/run/run_watch.h"
@@ -27,7 +28,10 @@ static bool has_momentum_bound(const FemRunState *run) {
 
 // Steps, and measures the state that the step leads to. RETRY: too far for the contact lists, or no numbers.
 static Status step(FemRunState *run, Proposal *proposal) {
-  TRY(fem_integrator_step(run->integrator, &proposal->time));
+  FemRunSpan span = fem_run_clock_begin(run);
+  Status status = fem_integrator_step(run->integrator, &proposal->time);
+  fem_run_clock_end(run, span, &run->result->cost.phases.integration);
+  TRY(status);
   const double *u, *v;
   TRY(fem_integrator_at(run->integrator, proposal->time, &u, &v));
   size_t bytes = (size_t)run->system.numbering.count * sizeof(double);
@@ -166,7 +170,7 @@ static Status commit(FemRunState *run, Proposal *proposal) {
   return fem_rest_has_changed(run->rest) ? fem_run_stage_change(run) : STATUS_OK;
 }
 
-Status fem_run_step_advance(FemRunState *run) {
+static Status advance(FemRunState *run) {
   Proposal proposal;
   TRY(propose(run, &proposal));
   FemVerdict verdict = judge(run, &proposal);
@@ -175,4 +179,11 @@ Status fem_run_step_advance(FemRunState *run) {
     if (!proposal.is_evaluated) verdict = judge(run, &proposal);
   }
   return verdict.stands ? commit(run, &proposal) : try_again(run, &verdict);
+}
+
+Status fem_run_step_advance(FemRunState *run) {
+  FemRunSpan span = fem_run_clock_begin(run);
+  Status status = advance(run);
+  fem_run_clock_end(run, span, &run->result->cost.phases.measures);
+  return status;
 }

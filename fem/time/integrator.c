@@ -560,3 +560,7 @@ FemIntegratorStats fem_integrator_stats(const FemIntegrator *integrator) {
 const FemSolverStats *fem_integrator_solver_stats(const FemIntegrator *integrator) {
   return fem_ida_solver_stats(integrator->solver);
 }
+
+double fem_integrator_product_s(const FemIntegrator *integrator) {
+  return fem_ida_solver_product_s(integrator->solver);
+}

@@ -76,5 +76,7 @@ const double *fem_integrator_acceleration(const FemIntegrator *integrator);
 
 FemIntegratorStats fem_integrator_stats(const FemIntegrator *integrator);
 const FemSolverStats *fem_integrator_solver_stats(const FemIntegrator *integrator);
+// Wall time of linear systems outside of their solver: products and vectors [s].
+double fem_integrator_product_s(const FemIntegrator *integrator);
 
 #endif

@@ -5,8 +5,8 @@
 
 #include "base/memory.h"
 
-// Below this many elements one thread does it all: a colour is a barrier, and some ten of them take as long as
-// the work that a second thread would save.
+// Below this many elements one thread does it all: a colour is a barrier, and some ten of them take as long
+// as the work that a second thread would save.
 enum { FEW_FORCES = 8000, FEW_MATRICES = 2000 };
 // A quadratic element is as much work as so many linear ones.
 enum { QUADRATIC_FORCES = 6, QUADRATIC_MATRICES = 16 };

@@ -8,8 +8,8 @@
 
 #include "base/memory.h"
 
-// Elements of a chunk at most: positions and forces that a first-level cache holds, and work worth handing to a
-// thread. Fewer and larger chunks have fewer colours.
+// Elements of a chunk at most: positions and forces that a first-level cache holds, and work worth handing to
+// a thread. Fewer and larger chunks have fewer colours.
 enum { CHUNK_PACKS = 128, CHUNK = CHUNK_PACKS * FEM_LANES };
 // A chunk conflicts with fewer than this many others unless a vertex has thousands of elements.
 enum { COLOUR_WORDS = 8 };

@@ -50,14 +50,19 @@ static const FemCheckpointNumber numbers[] = {
     PART(cost, wall_s, FEM_REAL, "s"),
     PART(cost, cpu_s, FEM_REAL, "s"),
     PART(cost, work_s, FEM_REAL, "s"),
+    PHASE(start),
     PHASE(broad_phase),
     PHASE(overlap),
     PHASE(contact),
     PHASE(forces),
+    PHASE(layout),
     PHASE(assembly),
     PHASE(analysis),
     PHASE(factorisation),
     PHASE(solve),
+    PHASE(products),
+    PHASE(integration),
+    PHASE(measures),
     PHASE(output),
     PHASE(total),
     COUNT(integrator, steps),
@@ -130,7 +135,7 @@ static const FemCheckpointNumber numbers[] = {
 
 // Whoever adds a number to one of these adds it to the list above.
 static_assert(sizeof(FemAudit) == 16 * sizeof(double), "numbers[] lists every number of FemAudit");
-static_assert(sizeof(FemRunPhases) == 10 * sizeof(double), "numbers[] lists every phase");
+static_assert(sizeof(FemRunPhases) == 15 * sizeof(double), "numbers[] lists every phase");
 static_assert(sizeof(FemIntegratorStats) == 10 * sizeof(double), "numbers[] lists the integrator's counts");
 static_assert(sizeof(FemSolverStats) == 10 * sizeof(double), "numbers[] lists the solver's counts");
 static_assert(sizeof(ContactPairCounts) == 7 * sizeof(long long), "numbers[] lists the counts of pairs");

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "fem/model/limits.h"
@@ -42,6 +43,7 @@ struct FemIdaSolver {
   int followed;              // iterations since the last factor
   FemCg cg;
   double *piece; // scratch, over ranks                        (part->count)
+  double product_s;
 };
 
 int fem_ida_solver_answer(FemIdaFailure *failure, Status status) {
@@ -195,11 +197,18 @@ static int set_up_callback(SUNLinearSolver linear, SUNMatrix matrix) {
   return fem_direct_flag(fem_ida_solver_answer(solver->failure, factorise(solver)));
 }
 
+static double solver_s(const FemIdaSolver *solver) {
+  const FemSolverStats *stats = solver->ops->stats(solver->solver);
+  return stats->analyse_s + stats->factorise_s + stats->solve_s;
+}
+
 static int solve_callback(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_Vector b,
                           sunrealtype tolerance) {
   (void)matrix, (void)tolerance;
   FemIdaSolver *solver = linear->content;
+  double began = clock_wall_s() - solver_s(solver);
   Status status = solve(solver, N_VGetArrayPointer(b), N_VGetArrayPointer(x));
+  solver->product_s += clock_wall_s() - solver_s(solver) - began;
   return fem_direct_flag(fem_ida_solver_answer(solver->failure, status));
 }
 
@@ -324,4 +333,8 @@ const double *fem_ida_solver_masses(const FemIdaSolver *solver) {
 
 const FemSolverStats *fem_ida_solver_stats(const FemIdaSolver *solver) {
   return solver->ops->stats(solver->solver);
+}
+
+double fem_ida_solver_product_s(const FemIdaSolver *solver) {
+  return solver->product_s;
 }

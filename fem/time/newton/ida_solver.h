@@ -60,5 +60,7 @@ void fem_ida_solver_aim(FemIdaSolver *solver, double c, double tolerance);
 
 const double *fem_ida_solver_masses(const FemIdaSolver *solver); // of the unknowns [kg]   (part->count)
 const FemSolverStats *fem_ida_solver_stats(const FemIdaSolver *solver);
+// Wall time of linear systems outside of their solver: products and vectors [s].
+double fem_ida_solver_product_s(const FemIdaSolver *solver);
 
 #endif
