@@ -32,6 +32,8 @@ Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLay
   for (int f = 0; f < layout->interface_count; f++)
     evaluation->interfaces[f] =
         (ContactInterface){.a = layout->interfaces[f].a, .b = layout->interfaces[f].b};
+  evaluation->given_forces = evaluation->forces;
+  evaluation->given_covered = evaluation->covered;
   return contact_patches_create(&evaluation->patches, layout);
 }
 
@@ -100,7 +102,7 @@ static void clear(ContactEvaluation *evaluation) {
     size_t place = (size_t)patches->elements[e].tet;
     evaluation->covered[place] = resting(covered, place);
   }
-  evaluation->is_valid = false;
+  evaluation->version = 0;
   evaluation->energy = rest ? rest->energy : 0;
   evaluation->counts = (ContactPairCounts){0};
 }
@@ -119,7 +121,7 @@ void contact_evaluation_start_over(ContactEvaluation *evaluation, const ContactL
     memset(evaluation->forces, 0, forces);
     memset(evaluation->covered, 0, covered);
   }
-  evaluation->is_valid = false;
+  evaluation->version = 0;
 }
 
 // Lists the candidates whose boxes meet, nudges allowed for.
@@ -454,7 +456,6 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
   memcpy(evaluation->positions, positions, 3 * (size_t)layout->mesh.position_count * sizeof(double));
   TRY(press(evaluation, layout));
   evaluation->time = time;
-  evaluation->is_valid = true;
   evaluation->overlap_s = overlapped - start;
   evaluation->force_s = clock_wall_s() - overlapped;
   return STATUS_OK;
@@ -467,9 +468,6 @@ Status contact_evaluation_list(ContactEvaluation *evaluation, const ContactLayou
   return sift_by_faces(evaluation, layout, true, positions);
 }
 
-bool contact_evaluation_is_at(const ContactEvaluation *evaluation, const ContactLayout *layout, double time,
-                              const double *positions) {
-  size_t size = 3 * (size_t)layout->def.vertex_count * sizeof(double);
-  return evaluation->is_valid && evaluation->time == time &&
-         memcmp(evaluation->positions, positions, size) == 0;
+int contact_evaluation_active_count(const ContactEvaluation *evaluation) {
+  return evaluation->pair_count + (evaluation->rest ? (int)evaluation->rest->pair_count : 0);
 }

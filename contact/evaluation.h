@@ -23,7 +23,7 @@ typedef struct ContactPairCounts {
 
 typedef struct ContactEvaluation {
   const ContactRest *rest; // stands in the result beside the candidates (contact/rest.h); NULL: nothing
-  bool is_valid;
+  long long version; // of the time and positions (contact_evaluate); 0: none that may be asked for again
   double time;       // of this result [s]
   double *positions; // of this result [m]; then the virtual vertices    (position_count, 3)
   double energy;     // U [J]
@@ -34,9 +34,12 @@ typedef struct ContactEvaluation {
   double *volumes;          // V_ij [m³]                             (pair_count)
   ContactFieldPair *fields; //                                       (pair_count)
   double *pair_forces; // on the vertices of the pairs' tetrahedra, a shape's zeros [N]  (pair_count, 2, 4, 3)
-  ContactPatches patches;       // with W_i and forces per node
-  double *forces;               // −∂U/∂x [N]                            (vertex_count, 3)
-  double *covered;              // Σ over interfaces of W_i [m³]            (tet_count)
+  ContactPatches patches; // with W_i and forces per node
+  double *forces;         // −∂U/∂x [N]                            (vertex_count, 3)
+  double *covered;        // Σ over interfaces of W_i [m³]            (tet_count)
+  // The same by the vertices and tetrahedra as they were given; borrowed.
+  const double *given_forces;   //                                  (given vertex_count, 3)
+  const double *given_covered;  //                                  (given tet_count)
   ContactInterface *interfaces; //                                       (interface_count)
   ContactPairCounts counts;     // of the pairs given to the model
   double overlap_s, force_s;    // wall time [s]
@@ -68,8 +71,7 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
 Status contact_evaluation_list(ContactEvaluation *evaluation, const ContactLayout *layout,
                                const ContactCandidateList *candidates, const double *positions);
 
-// Whether the result is that of these positions.
-bool contact_evaluation_is_at(const ContactEvaluation *evaluation, const ContactLayout *layout, double time,
-                              const double *positions);
+// Pairs with V > 0, those at rest included.
+int contact_evaluation_active_count(const ContactEvaluation *evaluation);
 
 #endif

@@ -169,8 +169,8 @@ static Status find_middles(ContactPassage *passage, const ContactLayout *layout)
   return contact_middle_find(&layout->mesh, layout->def.tets, layout->rest, &passage->middles);
 }
 
-Status contact_passage_look(ContactPassage *passage, ContactSystem *system) {
-  const ContactEvaluation *evaluation = contact_system_evaluation(system);
+Status contact_passage_look(ContactPassage *passage, const ContactSystem *system,
+                            const ContactEvaluation *evaluation) {
   size_t elements = (size_t)evaluation->patches.element_count;
   passage->passed = 0;
   if (!memory_reserve((void **)&passage->meetings, &passage->meeting_capacity, elements,

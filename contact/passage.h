@@ -65,8 +65,9 @@ typedef struct ContactPassage {
 
 void contact_passage_destroy(ContactPassage *passage); // also of a zeroed one, which is a beginning
 
-// At the system's last evaluation: fills `next`, `passed` and `first`.
-Status contact_passage_look(ContactPassage *passage, ContactSystem *system);
+// At an evaluation of the system: fills `next`, `passed` and `first`.
+Status contact_passage_look(ContactPassage *passage, const ContactSystem *system,
+                            const ContactEvaluation *evaluation);
 // The evaluated state is accepted.
 void contact_passage_accept(ContactPassage *passage);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/system.h"
 
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -24,13 +23,13 @@ struct ContactSystem {
   ContactLayout layout;
   double *positions; // of the contact mesh, scratch; with virtual vertices or stars only  (position_count, 3)
   double *velocities; // of its vertices, scratch; with stars only                        (vertex_count, 3)
-  // By the vertices and tetrahedra as they were given, of the last evaluation; with stars only.
+  // By the vertices and tetrahedra as they were given, of the evaluation; with stars only.
   double *given_forces, *given_covered, *given_volumes;
   ContactCandidates candidates;
   ContactNear near;
   ContactRest rest; // made by the first contact_system_hold
   bool has_rest;
-  ContactEvaluation evaluation; // the last one
+  ContactEvaluation evaluation;
   ContactStiffness stiffness;
   ContactEvaluation audits[2]; // candidate, reference; made by the first audit
   bool has_audits;
@@ -64,6 +63,8 @@ static Status reserve(ContactSystem *system, const ContactSystemDef *def) {
   if (!system->velocities || !system->given_forces || !system->given_covered || !system->given_volumes)
     return status_no_memory("a contact system");
   measure_given(def, system->given_volumes);
+  system->evaluation.given_forces = system->given_forces;
+  system->evaluation.given_covered = system->given_covered;
   return contact_star_sink_create(&system->star_sink, &system->stars);
 }
 
@@ -79,10 +80,10 @@ static Status create_parts(ContactSystem *system, const ContactSystemDef *def) {
   TRY(contact_stars_create(&system->stars, def));
   if (is_smooth(def) && !(def->margin > 0)) system->stars.def.margin = contact_layout_margin(def);
   TRY(contact_layout_create(&system->layout, &system->stars.def));
+  TRY(contact_evaluation_create(&system->evaluation, &system->layout));
   TRY(reserve(system, def));
   TRY(contact_candidates_create(&system->candidates, &system->layout));
   TRY(contact_near_create(&system->near, &system->layout));
-  TRY(contact_evaluation_create(&system->evaluation, &system->layout));
   system->counters.resting = system->layout.self.left_out.count;
   return contact_stiffness_create(&system->stiffness, &system->layout);
 }
@@ -226,9 +227,9 @@ static void count(ContactCounters *counters, const ContactEvaluation *evaluation
   counters->force_s += evaluation->force_s;
 }
 
+// Where the contact mesh is.
 static Status evaluate(ContactSystem *system, double time, const double *positions) {
   ContactEvaluation *evaluation = &system->evaluation;
-  if (contact_evaluation_is_at(evaluation, &system->layout, time, positions)) return STATUS_OK;
   TRY(check_margin(system, time, positions));
   const ContactCandidateList *list =
       contact_near_choose(&system->near, &system->layout, &system->candidates, time, positions);
@@ -237,6 +238,16 @@ static Status evaluate(ContactSystem *system, double time, const double *positio
   count(&system->counters, evaluation);
   if (system->has_rest) system->counters.left_at_rest += system->rest.candidate_count;
   fold_result(system);
+  return STATUS_OK;
+}
+
+Status contact_evaluate(ContactSystem *system, long long version, double time, const double *positions,
+                        const ContactEvaluation **evaluation) {
+  ContactEvaluation *own = &system->evaluation;
+  *evaluation = own;
+  if (version != 0 && own->version == version) return STATUS_OK;
+  TRY(evaluate(system, time, place(system, positions)));
+  own->version = version;
   return STATUS_OK;
 }
 
@@ -265,7 +276,8 @@ static Status keep_traces(ContactSystem *system) {
   return STATUS_OK;
 }
 
-Status contact_system_trace(ContactSystem *system, double *pressures, double *depths) {
+Status contact_system_trace(ContactSystem *system, const ContactEvaluation *evaluation, double *pressures,
+                            double *depths) {
   const ContactLayout *layout = &system->layout;
   size_t count = (size_t)layout->def.vertex_count, given = (size_t)system->stars.given_vertex_count;
   memset(pressures, 0, given * sizeof *pressures);
@@ -278,7 +290,7 @@ Status contact_system_trace(ContactSystem *system, double *pressures, double *de
     memcpy(system->traces, system->resting_traces, count * sizeof *system->traces);
   else
     memset(system->traces, 0, count * sizeof *system->traces);
-  contact_trace_add(layout, &system->evaluation, NULL, system->traces);
+  contact_trace_add(layout, evaluation, NULL, system->traces);
   contact_trace_divide(layout, &system->stars, system->traces, system->given_traces, pressures, depths);
   return STATUS_OK;
 }
@@ -320,16 +332,12 @@ bool contact_system_is_near(const ContactSystem *system, int interface) {
   return begin[interface + 1] > begin[interface];
 }
 
-Status contact_system_eval(ContactSystem *system, double time, const double *positions, double *energy,
-                           double *force) {
-  TRY(evaluate(system, time, place(system, positions)));
-  const ContactEvaluation *evaluation = &system->evaluation;
-  *energy = evaluation->energy;
-  for (int n = 0; force && n < evaluation->patches.node_count; n++) {
+void contact_system_add_force(const ContactSystem *system, const ContactEvaluation *evaluation,
+                              double *force) {
+  for (int n = 0; n < evaluation->patches.node_count; n++) {
     const ContactNode *node = &evaluation->patches.nodes[n];
     contact_stars_push(&system->stars, node->vertex, vec3_at(node->force), force);
   }
-  return STATUS_OK;
 }
 
 void contact_system_add_resting(const ContactSystem *system, double *force) {
@@ -338,10 +346,9 @@ void contact_system_add_resting(const ContactSystem *system, double *force) {
     contact_stars_push(&system->stars, v, vec3_at(system->rest.forces + 3 * (size_t)v), force);
 }
 
-Status contact_system_stiffness(ContactSystem *system, double time, const double *positions,
+Status contact_system_stiffness(ContactSystem *system, const ContactEvaluation *evaluation,
                                 const ContactStiffnessSink *sink) {
-  TRY(evaluate(system, time, place(system, positions)));
-  return contact_stiffness_add(&system->stiffness, &system->layout, &system->evaluation,
+  return contact_stiffness_add(&system->stiffness, &system->layout, evaluation,
                                contact_system_sink(system, sink));
 }
 
@@ -358,34 +365,15 @@ static Status visit_given(void *visitor, int count, const int *vertices) {
   return visit->visit(visit->visitor, count, vertices);
 }
 
-Status contact_system_couple(ContactSystem *system, double reach, void *visitor,
-                             Status (*visit)(void *visitor, int count, const int *vertices)) {
-  const ContactEvaluation *evaluation = &system->evaluation;
+Status contact_system_couple(ContactSystem *system, const ContactEvaluation *evaluation, double reach,
+                             void *visitor, Status (*visit)(void *visitor, int count, const int *vertices)) {
   Visit given = {system, visitor, visit};
-  assert(evaluation->is_valid);
   return contact_stiffness_couple(&system->stiffness, &system->layout, &system->candidates.list,
                                   evaluation->time, evaluation->positions, reach, &given, visit_given);
 }
 
-const ContactInterface *contact_system_interfaces(const ContactSystem *system, int *interface_count) {
-  *interface_count = system->layout.interface_count;
-  return system->evaluation.interfaces;
-}
-
-const double *contact_system_forces(const ContactSystem *system) {
-  return system->stars.is_needed ? system->given_forces : system->evaluation.forces;
-}
-
-const double *contact_system_covered(const ContactSystem *system) {
-  return system->stars.is_needed ? system->given_covered : system->evaluation.covered;
-}
-
-int contact_system_active_count(const ContactSystem *system) {
-  return system->evaluation.pair_count + (int)system->rest.pair_count;
-}
-
-Status contact_system_active_pairs(const ContactSystem *system, int *pair_count, double **pairs, int **tets) {
-  const ContactEvaluation *evaluation = &system->evaluation;
+Status contact_system_active_pairs(const ContactSystem *system, const ContactEvaluation *evaluation,
+                                   int *pair_count, double **pairs, int **tets) {
   size_t active = (size_t)evaluation->mesh_pair_count;
   *pair_count = evaluation->mesh_pair_count;
   *pairs = memory_copy(evaluation->coordinates, active, OVERLAP_PAIR_SIZE * sizeof(double));
@@ -403,17 +391,17 @@ Status contact_system_active_pairs(const ContactSystem *system, int *pair_count,
 }
 
 // A shape that moves by v(x) changes V as vertices that moved by −v would.
-double contact_system_shape_power(const ContactSystem *system) {
+double contact_system_shape_power(const ContactSystem *system, const ContactEvaluation *evaluation) {
   const ContactLayout *layout = &system->layout;
-  const ContactPatches *patches = &system->evaluation.patches;
+  const ContactPatches *patches = &evaluation->patches;
   double power = 0;
   for (int p = 0; p < patches->patch_count; p++) {
     int s = layout->interfaces[patches->patches[p].interface].shape;
     if (s < 0) continue;
     for (int n = patches->patches[p].node_begin; n < patches->patches[p].node_end; n++) {
       const ContactNode *node = &patches->nodes[n];
-      Vec3 x = vec3_at(system->evaluation.positions + 3 * (size_t)node->vertex);
-      Vec3 velocity = contact_shape_velocity(&layout->def.shapes[s], system->evaluation.time, x);
+      Vec3 x = vec3_at(evaluation->positions + 3 * (size_t)node->vertex);
+      Vec3 velocity = contact_shape_velocity(&layout->def.shapes[s], evaluation->time, x);
       power += vec3_dot(vec3_at(node->force), velocity);
     }
   }
@@ -437,10 +425,6 @@ size_t contact_system_bytes(const ContactSystem *system) {
   return sum + contact_footprint_evaluation(&system->evaluation);
 }
 
-const ContactEvaluation *contact_system_evaluation(const ContactSystem *system) {
-  return &system->evaluation;
-}
-
 const ContactLayout *contact_system_layout(const ContactSystem *system) {
   return &system->layout;
 }
@@ -455,13 +439,13 @@ static Status create_audits(ContactSystem *system) {
   return STATUS_OK;
 }
 
-Status contact_system_near_pairs(ContactSystem *system, int *count, const double **pairs) {
-  *count = 0, *pairs = NULL;
-  if (!system->evaluation.is_valid) return STATUS_OK;
+Status contact_system_near_pairs(ContactSystem *system, double time, const double *positions, int *count,
+                                 const double **pairs) {
+  positions = place(system, positions);
+  TRY(check_margin(system, time, positions));
   TRY(create_audits(system));
   ContactEvaluation *listed = &system->audits[0];
-  TRY(contact_evaluation_list(listed, &system->layout, &system->candidates.list,
-                              system->evaluation.positions));
+  TRY(contact_evaluation_list(listed, &system->layout, &system->candidates.list, positions));
   *count = listed->mesh_pair_count, *pairs = listed->coordinates;
   return STATUS_OK;
 }
@@ -470,10 +454,6 @@ bool contact_system_asks_model(const ContactSystem *system) {
   for (int f = 0; f < system->layout.interface_count; f++)
     if (system->layout.interfaces[f].shape < 0) return true;
   return false;
-}
-
-int contact_system_mesh_pair_count(const ContactSystem *system) {
-  return system->evaluation.mesh_pair_count;
 }
 
 Status contact_system_audit(ContactSystem *system, double time, const double *positions,

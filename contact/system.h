@@ -27,8 +27,8 @@
 #include "contact/audit.h"
 #include "contact/def.h"
 #include "contact/evaluation.h"
-#include "contact/stiffness.h"
 #include "contact/status.h"
+#include "contact/stiffness.h"
 #include "contact/surface/stars.h"
 
 // Counts and times since creation, for summary and warnings.
@@ -43,7 +43,7 @@ typedef struct ContactCounters {
   double broad_s, overlap_s, force_s; // of searches, and of evaluations by phase [s]
 } ContactCounters;
 
-typedef struct ContactSystem ContactSystem; // opaque: lists, scratch memory and the last evaluation
+typedef struct ContactSystem ContactSystem; // opaque: lists, scratch memory and one evaluation
 
 Status contact_system_create(ContactSystem **system, const ContactSystemDef *def);
 void contact_system_destroy(ContactSystem *system);
@@ -75,49 +75,52 @@ bool contact_system_is_resting(const ContactSystem *system, int interface);
 // before it was held.
 bool contact_system_is_near(const ContactSystem *system, int interface);
 
-// Energy U [J] and, added to `force` (vertex_count, 3) unless NULL, −∂U/∂x [N].
-// STATUS_RETRY: a vertex moved beyond the margin since the last update. The result of the last positions is
-// kept.
-Status contact_system_eval(ContactSystem *system, double time, const double *positions, double *energy,
-                           double *force);
+// Contact at a time and positions (vertex_count, 3). `version`: the same number says the same time and
+// positions, which are evaluated once as long as no others are; 0: they have none. The evaluation is the
+// system's, valid until the next call and until contact_system_hold.
+// STATUS_RETRY: a vertex moved beyond the margin since the last update; the evaluation before is kept.
+Status contact_evaluate(ContactSystem *system, long long version, double time, const double *positions,
+                        const ContactEvaluation **evaluation);
 
-// Adds the forces of interfaces at rest [N], which contact_system_eval leaves out, to `force`.
+// All below that takes an evaluation takes one of this system.
+
+// Adds −∂U/∂x [N] to `force` (vertex_count, 3), that of interfaces at rest left out.
+void contact_system_add_force(const ContactSystem *system, const ContactEvaluation *evaluation,
+                              double *force);
+// Adds the forces of interfaces at rest [N].
 void contact_system_add_resting(const ContactSystem *system, double *force);
 
-// Adds ∂²U/∂x² at those positions to the sink (evaluates first if they are not the last ones).
-Status contact_system_stiffness(ContactSystem *system, double time, const double *positions,
+// Adds ∂²U/∂x² to the sink.
+Status contact_system_stiffness(ContactSystem *system, const ContactEvaluation *evaluation,
                                 const ContactStiffnessSink *sink);
 
-// Calls `visit` for every clique of vertices that the stiffness may couple at the last evaluated positions,
-// pairs that are apart by less than `reach` [m] included, so that a matrix pattern can be laid out ahead.
-Status contact_system_couple(ContactSystem *system, double reach, void *visitor,
-                             Status (*visit)(void *visitor, int count, const int *vertices));
+// Calls `visit` for every clique of vertices that the stiffness may couple, pairs that are apart by less than
+// `reach` [m] included, so that a matrix pattern can be laid out ahead.
+Status contact_system_couple(ContactSystem *system, const ContactEvaluation *evaluation, double reach,
+                             void *visitor, Status (*visit)(void *visitor, int count, const int *vertices));
 
-// Of the last evaluation. Pointers are the system's, valid until the next call.
-const ContactInterface *contact_system_interfaces(const ContactSystem *system, int *count);
-const double *contact_system_forces(const ContactSystem *system); // per vertex [N] (vertex_count, 3)
-// Σ over interfaces of W_i [m³] (tet_count)
-const double *contact_system_covered(const ContactSystem *system);
 // Pressure [Pa] and depth [m] at the surface by contact/pressure/trace.h, those at rest included
 // (vertex_count). With another potential than `field` zeros.
-Status contact_system_trace(ContactSystem *system, double *pressures, double *depths);
+Status contact_system_trace(ContactSystem *system, const ContactEvaluation *evaluation, double *pressures,
+                            double *depths);
+// The power that moving shapes put in [W]: ∂U/∂t at fixed positions.
+double contact_system_shape_power(const ContactSystem *system, const ContactEvaluation *evaluation);
+// The pairs of meshes with V > 0, as handed to the model (in general position), for audits. Owned by the
+// caller (memory_free): pairs (count, 2, 4, 3), tets (count, 2).
+Status contact_system_active_pairs(const ContactSystem *system, const ContactEvaluation *evaluation,
+                                   int *count, double **pairs, int **tets);
+// Likewise the pairs whose boxes meet at positions that the last update covers, with volume or without: near
+// misses, too. Changes nothing but scratch memory. `pairs` (count, 2, 4, 3) is the system's, valid until the
+// next call.
+Status contact_system_near_pairs(ContactSystem *system, double time, const double *positions, int *count,
+                                 const double **pairs);
+
 // The number that the definition gives an element of the contact mesh (`origin`, contact/surface/stars.h).
 int contact_system_origin(const ContactSystem *system, int tet);
-int contact_system_active_count(const ContactSystem *system); // pairs with V > 0, those at rest included
-// The pairs of the last evaluation with V > 0, as handed to the model (in general position); for audits and
-// capture. Owned by the caller (memory_free): pairs (count, 2, 4, 3), tets (count, 2).
-Status contact_system_active_pairs(const ContactSystem *system, int *count, double **pairs, int **tets);
-// Likewise the pairs whose boxes meet, with volume or without: near misses, too. Changes nothing but scratch
-// memory. `pairs` (count, 2, 4, 3) is the system's, valid until the next call.
-Status contact_system_near_pairs(ContactSystem *system, int *count, const double **pairs);
-// The power that moving shapes put in at the last evaluation [W]: ∂U/∂t at fixed positions.
-double contact_system_shape_power(const ContactSystem *system);
 const ContactCounters *contact_system_counters(const ContactSystem *system);
 // What it holds on the heap [bytes], the overlap model left out.
 size_t contact_system_bytes(const ContactSystem *system);
-// What laws that build on the potential read (contact/friction): the last evaluation and the
-// layout. Both are the system's; the evaluation is valid until the next one.
-const ContactEvaluation *contact_system_evaluation(const ContactSystem *system);
+// The bodies, interfaces and cells; the system's.
 const ContactLayout *contact_system_layout(const ContactSystem *system);
 // The layout's vertices are those of the definition, except where elements are quadratic: there the contact
 // mesh has vertices of its own (contact/surface/stars.h). Laws convert positions by `place`, velocities by
@@ -131,8 +134,6 @@ void contact_system_carriers(ContactSystem *system, int *count, const int **vert
 
 // Whether bodies can meet each other or themselves. Of shapes alone no overlap model is asked.
 bool contact_system_asks_model(const ContactSystem *system);
-// Pairs of meshes with V > 0 at the last evaluation, those at rest left out.
-int contact_system_mesh_pair_count(const ContactSystem *system);
 
 // Audit: the same configuration with another overlap model: differences against `reference`.
 // Half-spaces are left out: no model takes part in them. Changes nothing but scratch memory.

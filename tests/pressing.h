@@ -5,6 +5,7 @@
 #define TETLAP_TESTS_PRESSING_H
 
 #include "blocks.h"
+#include "evaluated.h"
 #include "product.h"
 
 #include "base/vec3.h"
@@ -52,9 +53,7 @@ static inline void destroy(Scene *scene) {
 }
 
 static inline double energy_at(const Scene *scene, const double *x) {
-  double energy;
-  ck_assert_ok(contact_system_eval(scene->system, 0, x, &energy, NULL));
-  return energy;
+  return evaluated_at(scene->system, 0, x)->energy;
 }
 
 static inline void move(const Scene *scene) {
@@ -63,9 +62,9 @@ static inline void move(const Scene *scene) {
 
 // Owned by the caller (free).
 static inline double *forces_at(const Scene *scene, const double *x) {
-  double energy, *force = calloc(3 * (size_t)scene->blocks.vertex_count, sizeof(double));
+  double *force = calloc(3 * (size_t)scene->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(force);
-  ck_assert_ok(contact_system_eval(scene->system, 0, x, &energy, force));
+  evaluated_with_force(scene->system, x, force);
   return force;
 }
 

@@ -125,13 +125,16 @@ Status app_comparison_audit(AppComparison *comparison, const FemRunProgress *pro
   if (!effect) return STATUS_OK;
   ContactSystem *contact = fem_effect_contact_system(effect);
   comparison->asks_model = contact_system_asks_model(contact);
-  if (comparison->audit_every == 0 || contact_system_mesh_pair_count(contact) == 0) return STATUS_OK;
+  if (comparison->audit_every == 0) return STATUS_OK;
+  const FemState *accepted = &progress->system->accepted;
+  const ContactEvaluation *evaluation;
+  TRY(fem_effect_contact_evaluate(progress->system, accepted, &evaluation));
+  if (evaluation->mesh_pair_count == 0) return STATUS_OK;
   if ((*step_in_contact)++ % comparison->audit_every != 0) return STATUS_OK;
   for (int m = 0; m < comparison->model_count; m++) {
     if (m == comparison->reference) continue;
     ContactAudit state;
-    TRY(contact_system_audit(contact, progress->time, progress->system->accepted.positions,
-                             &comparison->models[m].overlap,
+    TRY(contact_system_audit(contact, progress->time, accepted->positions, &comparison->models[m].overlap,
                              &comparison->models[comparison->reference].overlap, &state));
     TRY(app_audit_add(&comparison->models[m].audit, progress->time, &state));
   }

@@ -31,6 +31,7 @@ enum {
 typedef struct Slabs {
   AppStressRun *run;
   ContactSystem *contact;
+  const ContactEvaluation *evaluation; // at these positions
   double *positions;
   double depth, slid; // [m]
 } Slabs;
@@ -65,7 +66,7 @@ static void keep_worst(double *worst, double value) {
 // The forces on one slab inside of the patch.
 static void inspect(const Slabs *slabs, int body) {
   const FemModel *model = &slabs->run->model;
-  const double *force = contact_system_forces(slabs->contact);
+  const double *force = slabs->evaluation->given_forces;
   double middle[2], reach = reach_of(slabs->run, middle), edge = edge_of(slabs->run, body);
   double outwards = body == 0 ? -1 : 1, sum = 0, first = 0, squares = 0, tangential = 0, inner = 0;
   int count = 0;
@@ -92,7 +93,7 @@ static void inspect(const Slabs *slabs, int body) {
 
 static void inspect_all(const Slabs *slabs) {
   const FemModel *model = &slabs->run->model;
-  const double *force = contact_system_forces(slabs->contact);
+  const double *force = slabs->evaluation->given_forces;
   double total[2][3] = {{0}}, imbalance = 0, *extra = slabs->run->extra;
   for (int body = 0; body < 2; body++)
     for (int v = model->bodies[body].vertex_begin; v < model->bodies[body].vertex_end; v++)
@@ -112,12 +113,11 @@ static void place(Slabs *slabs) {
 static Status slide(Slabs *slabs, const double *velocities) {
   AppStressRun *run = slabs->run;
   for (int k = 0; k < SLIDES && !run->is_cut; k++) {
-    double energy;
     slabs->slid = k * STEP * edge_of(run, 0);
     place(slabs);
     TRY(contact_system_update(slabs->contact, 0, slabs->positions, velocities, 0.01, NULL));
-    TRY(contact_system_eval(slabs->contact, 0, slabs->positions, &energy, NULL));
-    run->extra[LEAST_PAIRS] = fmin(run->extra[LEAST_PAIRS], contact_system_active_count(slabs->contact));
+    TRY(contact_evaluate(slabs->contact, 0, 0, slabs->positions, &slabs->evaluation));
+    run->extra[LEAST_PAIRS] = fmin(run->extra[LEAST_PAIRS], slabs->evaluation->pair_count);
     run->extra[EVALUATIONS]++;
     for (int body = 0; body < 2; body++) inspect(slabs, body);
     inspect_all(slabs);

@@ -87,10 +87,10 @@ static void hand_over(const ContactLayout *layout, const ContactEvaluation *eval
              contact_shape_place_before(obstacle, evaluation->time, before, vec3_at(pair->before)));
 }
 
-Status contact_stick_pairs_eval(ContactStick *stick, ContactSystem *system, const ContactStickLast *last,
+Status contact_stick_pairs_eval(ContactStick *stick, const ContactSystem *system,
+                                const ContactEvaluation *evaluation, const ContactStickLast *last,
                                 double last_time, bool *is_resting) {
   const ContactLayout *layout = contact_system_layout(system);
-  const ContactEvaluation *evaluation = contact_system_evaluation(system);
   int count = evaluation->pair_count;
   TRY(contact_stick_reserve(stick, count));
   for (int i = 0; i < layout->interface_count; i++) is_resting[i] = contact_system_is_resting(system, i);
@@ -98,10 +98,9 @@ Status contact_stick_pairs_eval(ContactStick *stick, ContactSystem *system, cons
   return contact_stick_eval(stick, last, count, evaluation->positions, is_resting);
 }
 
-double contact_stick_pairs_shape_power(const ContactStick *stick, ContactSystem *system) {
-  const ContactLayout *layout = contact_system_layout(system);
+double contact_stick_pairs_shape_power(const ContactStick *stick, const ContactLayout *layout,
+                                       const ContactEvaluation *evaluation) {
   double power = 0;
-  const ContactEvaluation *evaluation = contact_system_evaluation(system);
   for (int k = 0; k < stick->pair_count; k++) {
     int shape = layout->interfaces[stick->pairs[k].interface].shape;
     if (shape < 0) continue;
@@ -145,9 +144,8 @@ static double power_of(const ContactStick *stick, const ContactLayout *layout,
 }
 
 double contact_stick_pairs_turned_power(const ContactStick *stick, ContactSystem *system,
-                                        const double *velocities) {
+                                        const ContactEvaluation *evaluation, const double *velocities) {
   const ContactLayout *layout = contact_system_layout(system);
-  const ContactEvaluation *evaluation = contact_system_evaluation(system);
   const double *v = contact_system_spread(system, velocities);
   double sum = 0, power = 0;
   for (int k = 0; k < stick->pair_count; k++) {

@@ -12,19 +12,22 @@
 // the one with more vertices; of a body and itself both halves. `laws` (interface_count).
 void contact_stick_pairs_laws(const ContactSystem *system, const double *coefficients, ContactStickLaw *laws);
 
-// Evaluates the friction for the system's last evaluation, from the last accepted state, which was at
+// Evaluates the friction for an evaluation of the system, from the last accepted state, which was at
 // `last_time` [s]. `is_resting` (interface_count) is filled.
-Status contact_stick_pairs_eval(ContactStick *stick, ContactSystem *system, const ContactStickLast *last,
+Status contact_stick_pairs_eval(ContactStick *stick, const ContactSystem *system,
+                                const ContactEvaluation *evaluation, const ContactStickLast *last,
                                 double last_time, bool *is_resting);
 
-// The power that moving obstacles without elements put in by friction at the last evaluation [W].
-double contact_stick_pairs_shape_power(const ContactStick *stick, ContactSystem *system);
+// Of the friction that was evaluated for this evaluation:
+// the power that moving obstacles without elements put in by friction [W];
+double contact_stick_pairs_shape_power(const ContactStick *stick, const ContactLayout *layout,
+                                       const ContactEvaluation *evaluation);
 
-// The power by which friction drives slip at these velocities (vertex_count, 3; as given): the sum over
+// the power by which friction drives slip at these velocities (vertex_count, 3; as given): the sum over
 // interfaces of the powers of their slipping pairs, where it is positive [W]. Friction acts against the
 // displacement since the last accepted state. Where the velocity has reversed since then it acts along the
 // velocity: the step was too long.
 double contact_stick_pairs_turned_power(const ContactStick *stick, ContactSystem *system,
-                                        const double *velocities);
+                                        const ContactEvaluation *evaluation, const double *velocities);
 
 #endif

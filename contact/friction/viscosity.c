@@ -65,11 +65,11 @@ static bool term_of(const ContactViscosity *viscosity, const View *view, int k, 
 
 typedef void (*TakeTerm)(void *self, const Term *term);
 
-static void walk_terms(const ContactViscosity *viscosity, const double *velocities, void *self,
+static void walk_terms(const ContactViscosity *viscosity, ContactViscosityMotion motion, void *self,
                        TakeTerm take) {
   View view = {.layout = contact_system_layout(viscosity->system),
-               .evaluation = contact_system_evaluation(viscosity->system),
-               .velocities = contact_system_spread(viscosity->system, velocities)};
+               .evaluation = motion.evaluation,
+               .velocities = contact_system_spread(viscosity->system, motion.velocities)};
   for (int k = 0; k < view.evaluation->pair_count; k++)
     for (int t = 0; t < 2; t++) {
       Term term;
@@ -113,23 +113,24 @@ static void measure_term(void *self, const Term *term) {
   power->driven -= term->resistance * term->rate * term->obstacle;
 }
 
-void contact_viscosity_add_force(const ContactViscosity *viscosity, const double *velocities, double *force) {
-  walk_terms(viscosity, velocities, &(ForceSink){contact_system_stars(viscosity->system), force}, push_term);
+void contact_viscosity_add_force(const ContactViscosity *viscosity, ContactViscosityMotion motion,
+                                 double *force) {
+  walk_terms(viscosity, motion, &(ForceSink){contact_system_stars(viscosity->system), force}, push_term);
 }
 
-void contact_viscosity_add_resultants(const ContactViscosity *viscosity, const double *velocities,
+void contact_viscosity_add_resultants(const ContactViscosity *viscosity, ContactViscosityMotion motion,
                                       double (*resultants)[3]) {
-  walk_terms(viscosity, velocities, resultants, sum_term);
+  walk_terms(viscosity, motion, resultants, sum_term);
 }
 
-void contact_viscosity_add_damping(const ContactViscosity *viscosity, const double *velocities, double scale,
-                                   const ContactStiffnessSink *sink) {
-  walk_terms(viscosity, velocities, &(TermSink){contact_system_sink(viscosity->system, sink), scale},
-             bend_term);
+void contact_viscosity_add_damping(const ContactViscosity *viscosity, ContactViscosityMotion motion,
+                                   double scale, const ContactStiffnessSink *sink) {
+  walk_terms(viscosity, motion, &(TermSink){contact_system_sink(viscosity->system, sink), scale}, bend_term);
 }
 
-ContactViscosityPower contact_viscosity_power(const ContactViscosity *viscosity, const double *velocities) {
+ContactViscosityPower contact_viscosity_power(const ContactViscosity *viscosity,
+                                              ContactViscosityMotion motion) {
   ContactViscosityPower power = {0, 0};
-  walk_terms(viscosity, velocities, &power, measure_term);
+  walk_terms(viscosity, motion, &power, measure_term);
   return power;
 }

@@ -24,25 +24,31 @@ typedef struct ContactViscosity {
 // STATUS_INPUT: η ≤ 0. There is nothing to destroy.
 Status contact_viscosity_create(ContactViscosity *viscosity, ContactSystem *system, double coefficient);
 
-// All below look at the system's last evaluation, which is of the potential `field`.
+// A motion: an evaluation of the system, which is of the potential `field`, and velocities there.
+typedef struct ContactViscosityMotion {
+  const ContactEvaluation *evaluation;
+  const double *velocities; // [m/s]                                        (vertex_count, 3)
+} ContactViscosityMotion;
 
-// Adds the forces [N] at these velocities (vertex_count, 3) to `force`.
-void contact_viscosity_add_force(const ContactViscosity *viscosity, const double *velocities, double *force);
+// Adds the forces [N] to `force` (vertex_count, 3).
+void contact_viscosity_add_force(const ContactViscosity *viscosity, ContactViscosityMotion motion,
+                                 double *force);
 
-// Adds to `resultants` [N] the force on the first side of each interface (contact_system_interfaces, 3).
-void contact_viscosity_add_resultants(const ContactViscosity *viscosity, const double *velocities,
+// Adds to `resultants` [N] the force on the first side of each interface (interface_count, 3).
+void contact_viscosity_add_resultants(const ContactViscosity *viscosity, ContactViscosityMotion motion,
                                       double (*resultants)[3]);
 
 // Adds −∂f/∂v times `scale`, which is exact and never negative. ∂f/∂x is left out: it is not symmetric, or
 // small.
-void contact_viscosity_add_damping(const ContactViscosity *viscosity, const double *velocities, double scale,
-                                   const ContactStiffnessSink *sink);
+void contact_viscosity_add_damping(const ContactViscosity *viscosity, ContactViscosityMotion motion,
+                                   double scale, const ContactStiffnessSink *sink);
 
-// Powers [W] at these velocities.
+// Powers [W].
 typedef struct ContactViscosityPower {
   double dissipated; // ≥ 0
   double driven;     // put in by moving obstacles without elements; those with a mesh are the caller's
 } ContactViscosityPower;
-ContactViscosityPower contact_viscosity_power(const ContactViscosity *viscosity, const double *velocities);
+ContactViscosityPower contact_viscosity_power(const ContactViscosity *viscosity,
+                                              ContactViscosityMotion motion);
 
 #endif

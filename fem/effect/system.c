@@ -180,6 +180,7 @@ Status fem_system_create_state(const FemSystem *system, FemState *state) {
   const FemState *accepted = &system->accepted;
   TRY(fem_state_create(state, system->model->vertex_count, accepted->positions, accepted->velocities));
   state->time = accepted->time;
+  state->version = accepted->version;
   state->last = accepted;
   state->is_held = accepted->is_held;
   return STATUS_OK;

@@ -21,7 +21,7 @@ static const double BRIEF = 1.5;
 Status fem_accuracy_create(FemAccuracy *accuracy, const FemModel *model, const ContactSystem *contact) {
   *accuracy = (FemAccuracy){0};
   if (!contact) return STATUS_OK;
-  contact_system_interfaces(contact, &accuracy->count);
+  accuracy->count = contact_system_layout(contact)->interface_count;
   size_t count = (size_t)accuracy->count;
   accuracy->pairs = memory_zeroed(count, sizeof *accuracy->pairs);
   accuracy->found = memory_zeroed(count, sizeof *accuracy->found);
@@ -174,10 +174,8 @@ static Status estimate(const ContactLayout *layout, const ContactEvaluation *eva
   return find_rim(layout, evaluation, patch, &found->rim);
 }
 
-Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, ContactSystem *contact,
-                         const FemState *state, double elastic) {
-  const ContactLayout *layout = contact_system_layout(contact);
-  const ContactEvaluation *evaluation = contact_system_evaluation(contact);
+Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, const ContactLayout *layout,
+                         const ContactEvaluation *evaluation, const FemState *state, double elastic) {
   accuracy->found_count = 0;
   accuracy->has_energies = false;
   accuracy->time = state->time;

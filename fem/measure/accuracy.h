@@ -57,7 +57,7 @@ enum { FEM_ACCURACY_KEPT = 20 };
 
 typedef struct FemAccuracy {
   int count;
-  FemAccuracyPair *pairs; // in the order of contact_system_interfaces     (count)
+  FemAccuracyPair *pairs; // by interfaces                                 (count)
   FemAccuracyPair *found; // in the state that is evaluated               (found_count)
   int *places;            // whose they are                               (found_count)
   double *pressed;        // P of that state [N]                          (count)
@@ -72,11 +72,11 @@ typedef struct FemAccuracy {
 Status fem_accuracy_create(FemAccuracy *accuracy, const FemModel *model, const ContactSystem *contact);
 void fem_accuracy_destroy(FemAccuracy *accuracy);
 
-// Finds pairs that press more than ever before at contact's last evaluation, that of this state; `elastic`:
-// the elastic energy of all bodies [J].
-Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, ContactSystem *contact,
-                         const FemState *state, double elastic);
-// The evaluated state is accepted.
+// Finds pairs that press more than ever before at a state, of which contact's evaluation is; `elastic`: the
+// elastic energy of all bodies [J].
+Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, const ContactLayout *layout,
+                         const ContactEvaluation *evaluation, const FemState *state, double elastic);
+// The state that was looked at is accepted.
 void fem_accuracy_accept(FemAccuracy *accuracy);
 
 // What follows for one pair.

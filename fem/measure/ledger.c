@@ -50,8 +50,11 @@ static Status look(FemLedger *ledger, const FemState *state, const FemLedgerEntr
     fem_readings_add(&ledger->next_readings[p], &entry->readings[p], state->time);
   }
   if (!ledger->contact) return STATUS_OK;
-  TRY(contact_passage_look(&ledger->passage, ledger->contact));
-  return fem_accuracy_look(&ledger->accuracy, ledger->system->model, ledger->contact, state, entry->elastic);
+  const ContactLayout *layout = contact_system_layout(ledger->contact);
+  const ContactEvaluation *contact;
+  TRY(fem_effect_contact_evaluate(ledger->system, state, &contact));
+  TRY(contact_passage_look(&ledger->passage, ledger->contact, contact));
+  return fem_accuracy_look(&ledger->accuracy, ledger->system->model, layout, contact, state, entry->elastic);
 }
 
 static void accept(FemLedger *ledger) {

@@ -38,7 +38,7 @@ Status fem_forces_create(FemForces *forces, const FemSystem *system, bool with_v
   *forces = (FemForces){.system = system};
   ContactSystem *contact = contact_of(system);
   if (!contact) return STATUS_OK;
-  contact_system_interfaces(contact, &forces->interface_count);
+  forces->interface_count = contact_system_layout(contact)->interface_count;
   size_t count = (size_t)forces->interface_count;
   bool has_friction = fem_forces_has_friction(system);
   forces->interfaces = memory_zeroed(count, sizeof *forces->interfaces);
@@ -62,44 +62,43 @@ void fem_forces_destroy(FemForces *forces) {
   *forces = (FemForces){0};
 }
 
-static void take_rubbing(const FemSystem *system, int count, FemRubbing *rubbing) {
-  const ContactStick *law = fem_effect_stick_of(fem_system_effect(system, &fem_effect_stick));
-  for (int i = 0; i < count; i++) {
-    vec3_store(rubbing[i].force, vec3_at(law->forces[i]));
-    rubbing[i].stuck = law->areas[i][0];
-    rubbing[i].slides = law->areas[i][1];
-  }
-}
-
-static void take_interfaces(FemForces *forces) {
-  const FemSystem *system = forces->system;
-  int count;
-  const ContactInterface *interfaces = contact_system_interfaces(contact_of(system), &count);
-  if (forces->rubbing) take_rubbing(system, count, forces->rubbing);
-  for (int i = 0; i < count; i++) {
+static void take_interfaces(FemForces *forces, const ContactInterface *interfaces) {
+  for (int i = 0; i < forces->interface_count; i++) {
     vec3_store(forces->interfaces[i], vec3_at(interfaces[i].force));
     vec3_store(forces->centres[i], vec3_at(interfaces[i].centre));
     forces->areas[i] = interfaces[i].area;
-    if (forces->rubbing) vec3_accumulate(forces->interfaces[i], vec3_at(forces->rubbing[i].force));
   }
 }
 
-static void take_friction(FemForces *forces) {
-  const FemSystem *system = forces->system;
+static Status take_friction(FemForces *forces, const FemState *state) {
+  void *stick = fem_system_effect(forces->system, &fem_effect_stick);
+  const ContactStick *law;
+  if (!stick) return STATUS_OK;
+  TRY(fem_effect_stick_evaluate(stick, state, &law));
+  for (int i = 0; i < forces->interface_count; i++) {
+    FemRubbing *rubbing = &forces->rubbing[i];
+    vec3_store(rubbing->force, vec3_at(law->forces[i]));
+    rubbing->stuck = law->areas[i][0];
+    rubbing->slides = law->areas[i][1];
+    vec3_accumulate(forces->interfaces[i], vec3_at(rubbing->force));
+  }
+  if (!forces->friction) return STATUS_OK;
   memset(forces->friction, 0, values_of(forces) * sizeof *forces->friction);
-  contact_stick_add_force(fem_effect_stick_of(fem_system_effect(system, &fem_effect_stick)),
-                          forces->friction);
+  contact_stick_add_force(law, forces->friction);
+  return STATUS_OK;
 }
 
 Status fem_forces_take(FemForces *forces, const FemState *state) {
   const FemSystem *system = forces->system;
-  ContactSystem *contact = contact_of(system);
   void *viscosity = fem_system_effect(system, &fem_effect_viscosity);
-  if (!contact) return STATUS_OK;
-  take_interfaces(forces);
+  const ContactEvaluation *evaluation;
+  TRY(fem_effect_contact_evaluate(system, state, &evaluation));
+  if (!evaluation) return STATUS_OK;
+  take_interfaces(forces, evaluation->interfaces);
   if (forces->contact)
-    memcpy(forces->contact, contact_system_forces(contact), values_of(forces) * sizeof *forces->contact);
-  if (viscosity) fem_effect_viscosity_add(viscosity, state->velocities, forces->interfaces, forces->contact);
-  if (forces->friction) take_friction(forces);
-  return forces->pressure ? contact_system_trace(contact, forces->pressure, forces->depth) : STATUS_OK;
+    memcpy(forces->contact, evaluation->given_forces, values_of(forces) * sizeof *forces->contact);
+  TRY(take_friction(forces, state));
+  if (viscosity) TRY(fem_effect_viscosity_add(viscosity, state, forces->interfaces, forces->contact));
+  if (!forces->pressure) return STATUS_OK;
+  return contact_system_trace(contact_of(system), evaluation, forces->pressure, forces->depth);
 }

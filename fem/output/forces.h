@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact and friction forces as they are written: those of the state that was measured last, a frame's
+// Contact and friction forces as they are written: those of a state, a frame's
 // within a step included, by the laws that move the bodies. So they follow from the frame's positions, and
 // friction and viscosity from its velocities and from what the last accepted state left (docs/output.md).
 #ifndef TETLAP_FEM_OUTPUT_FORCES_H
@@ -35,7 +35,7 @@ void fem_forces_destroy(FemForces *forces);
 
 bool fem_forces_has_friction(const FemSystem *system);
 
-// Of the state whose energy was asked for last (fem_system_energy evaluates all laws).
+// Those of a state.
 Status fem_forces_take(FemForces *forces, const FemState *state);
 
 #endif

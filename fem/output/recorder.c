@@ -28,16 +28,16 @@ static ContactSystem *contact_of(const FemSystem *system) {
   return effect ? fem_effect_contact_system(effect) : NULL;
 }
 
-static const ContactInterface *interfaces_of(const FemSystem *system, int *count) {
+static const ContactInterfaceDef *interfaces_of(const FemSystem *system, int *count) {
   ContactSystem *contact = contact_of(system);
-  *count = 0;
-  return contact ? contact_system_interfaces(contact, count) : NULL;
+  *count = contact ? contact_system_layout(contact)->interface_count : 0;
+  return contact ? contact_system_layout(contact)->interfaces : NULL;
 }
 
 static Status add_friction_columns(FemRecorder *recorder) {
   int count;
   FemHistory *history = &recorder->history;
-  const ContactInterface *interfaces = interfaces_of(recorder->system, &count);
+  const ContactInterfaceDef *interfaces = interfaces_of(recorder->system, &count);
   const void *effect = fem_system_effect(recorder->system, &fem_effect_contact);
   for (int i = 0; i < count && fem_forces_has_friction(recorder->system); i++) {
     const char *a = fem_effect_contact_name(effect, interfaces[i].a),
@@ -58,7 +58,7 @@ static Status add_columns(FemRecorder *recorder) {
     for (int c = 0; c < 3; c++)
       TRY(fem_history_add_column(history, "centre_%s_%c_m", model->bodies[b].name, "xyz"[c]));
   int count;
-  const ContactInterface *interfaces = interfaces_of(recorder->system, &count);
+  const ContactInterfaceDef *interfaces = interfaces_of(recorder->system, &count);
   const void *effect = fem_system_effect(recorder->system, &fem_effect_contact);
   for (int i = 0; i < count; i++)
     for (int c = 0; c < 3; c++)
@@ -171,10 +171,10 @@ Status fem_recorder_clear(const FemRecorder *recorder) {
   return STATUS_OK;
 }
 
-static void measure_elements(FemRecorder *recorder, const double *positions, FemMeasures *measures) {
+// `covered` (contact_evaluate) NULL: nothing is.
+static void measure_elements(FemRecorder *recorder, const double *positions, const double *covered,
+                             FemMeasures *measures) {
   const FemSystem *system = recorder->system;
-  ContactSystem *contact = contact_of(system);
-  const double *covered = contact ? contact_system_covered(contact) : NULL;
   measures->min_det_F = INFINITY;
   for (int e = 0; e < system->model->tet_count; e++) {
     recorder->det_F[e] = fem_model_det(system->model, e, positions);
@@ -196,19 +196,15 @@ static void measure_motion(const FemModel *model, const FemState *state, FemMeas
   vec3_store(measures->angular_momentum, angular);
 }
 
-static void measure_contact(const FemRecorder *recorder, FemMeasures *measures) {
-  const FemSystem *system = recorder->system;
-  ContactSystem *contact = contact_of(system);
-  if (!contact) return;
-  int count;
-  const ContactInterface *interfaces = contact_system_interfaces(contact, &count);
-  for (int i = 0; i < count; i++) {
-    measures->overlap_volume += interfaces[i].volume;
+static void measure_contact(const FemRecorder *recorder, const ContactEvaluation *evaluation,
+                            FemMeasures *measures) {
+  for (int i = 0; i < recorder->forces.interface_count; i++) {
+    measures->overlap_volume += evaluation->interfaces[i].volume;
     double force[3];
     vec3_store(force, vec3_at(recorder->forces.interfaces[i]));
     measures->contact_force = fmax(measures->contact_force, vec3_length(vec3_at(force)));
   }
-  measures->active_pairs = contact_system_active_count(contact);
+  measures->active_pairs = contact_evaluation_active_count(evaluation);
 }
 
 static void measure_steps(const FemRecorder *recorder, double time, FemMeasures *measures) {
@@ -217,27 +213,31 @@ static void measure_steps(const FemRecorder *recorder, double time, FemMeasures 
 }
 
 Status fem_recorder_measure(FemRecorder *recorder, const FemState *state, FemMeasures *measures) {
+  const ContactEvaluation *contact;
   *measures = (FemMeasures){0};
   TRY(fem_system_energy(recorder->system, state, &measures->energy));
-  measure_elements(recorder, state->positions, measures);
-  measure_motion(recorder->system->model, state, measures);
   TRY(fem_forces_take(&recorder->forces, state));
-  measure_contact(recorder, measures);
+  TRY(fem_effect_contact_evaluate(recorder->system, state, &contact));
+  measure_elements(recorder, state->positions, contact ? contact->given_covered : NULL, measures);
+  measure_motion(recorder->system->model, state, measures);
+  if (contact) measure_contact(recorder, contact, measures);
   measure_steps(recorder, state->time, measures);
-  ContactSystem *contact = contact_of(recorder->system);
-  fem_trouble_find(&recorder->watch, state->positions, contact ? contact_system_forces(contact) : NULL,
+  fem_trouble_find(&recorder->watch, state->positions, contact ? contact->given_forces : NULL,
                    recorder->det_F, recorder->overlap, &measures->trouble);
   return STATUS_OK;
 }
 
-// The entry of the ledger for the state that was measured last.
+// The entry of the ledger for a state that has been measured.
 static Status describe(FemRecorder *recorder, const FemState *state, const FemMeasures *measures,
                        FemLedgerEntry *entry) {
+  const ContactEvaluation *contact;
   TRY(fem_probes_measure(&recorder->probes, state, &recorder->forces));
-  *entry = (FemLedgerEntry){.contact = {.forces = (const double(*)[3])recorder->forces.interfaces},
+  TRY(fem_effect_contact_evaluate(recorder->system, state, &contact));
+  *entry = (FemLedgerEntry){.contact = {.count = recorder->forces.interface_count,
+                                        .interfaces = contact ? contact->interfaces : NULL,
+                                        .forces = (const double(*)[3])recorder->forces.interfaces},
                             .elastic = measures->energy.elastic,
                             .readings = recorder->probes.readings};
-  entry->contact.interfaces = interfaces_of(recorder->system, &entry->contact.count);
   return STATUS_OK;
 }
 
@@ -252,7 +252,7 @@ static void fill_passages(const FemRecorder *recorder, int count, const ContactP
   int interface_count;
   state->count[FEM_TROUBLE_PASSED] = count;
   if (count == 0) return;
-  const ContactInterface *interface = &interfaces_of(recorder->system, &interface_count)[first->interface];
+  const ContactInterfaceDef *interface = &interfaces_of(recorder->system, &interface_count)[first->interface];
   state->first[FEM_TROUBLE_PASSED] = contact_system_origin(contact_of(recorder->system), first->tet);
   state->passed[0] = interface->a;
   state->passed[1] = interface->b;

@@ -89,10 +89,13 @@ static Status release(FemRunState *run) {
   return numbering->count == count ? STATUS_OK : fem_system_renumber(&run->system);
 }
 
-static void warn_of_overlaps(const FemSystem *system) {
+static Status warn_of_overlaps(const FemSystem *system, const FemState *state) {
+  const ContactEvaluation *contact;
   char text[512];
-  for (int i = 0; (i = fem_run_start_overlap(system, i, text, sizeof text)) >= 0; i++)
+  TRY(fem_effect_contact_evaluate(system, state, &contact));
+  for (int i = 0; (i = fem_run_start_overlap(system, contact, i, text, sizeof text)) >= 0; i++)
     log_warning("%s", text);
+  return STATUS_OK;
 }
 
 // The first frame, and the audit from there on.
@@ -104,7 +107,7 @@ static Status begin_record(FemRunState *run) {
                   fem_model_strain_energy(run->model, FEM_ROUNDING));
   fem_run_frames_keep_extremes(run->result, &measures);
   fem_trouble_add(&run->result->trouble, run->time, &measures.trouble);
-  if (!run->options->from) warn_of_overlaps(&run->system);
+  if (!run->options->from) TRY(warn_of_overlaps(&run->system, &run->trial));
   // Files of an earlier run in this folder are about to be replaced: all of them go, the checkpoint too.
   if (!run->options->from) {
     TRY(fem_recorder_clear(&run->recorder));

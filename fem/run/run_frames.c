@@ -18,10 +18,7 @@ static void keep_frame(FemRunState *run, double time) {
   result->trajectory.times[frame] = time;
   memcpy(result->trajectory.positions + (size_t)frame * values, run->trial.positions,
          values * sizeof(double));
-  void *effect = fem_system_effect(&run->system, &fem_effect_contact);
-  if (!effect) return;
-  int count;
-  contact_system_interfaces(fem_effect_contact_system(effect), &count);
+  int count = run->recorder.forces.interface_count;
   for (int i = 0; i < count; i++)
     vec3_store(result->trajectory.interface_forces + 3 * ((size_t)frame * (size_t)count + (size_t)i),
                vec3_at(run->recorder.forces.interfaces[i]));
@@ -113,8 +110,9 @@ Status fem_run_frames_write_until(FemRunState *run, double time) {
 // "a, b" for each interface.
 static Status keep_names(FemRunResult *result, void *effect) {
   enum { NAME_SIZE = 256 };
-  int count;
-  const ContactInterface *interfaces = contact_system_interfaces(fem_effect_contact_system(effect), &count);
+  const ContactLayout *layout = contact_system_layout(fem_effect_contact_system(effect));
+  const ContactInterfaceDef *interfaces = layout->interfaces;
+  int count = layout->interface_count;
   result->trajectory.interface_names =
       memory_zeroed((size_t)count, sizeof *result->trajectory.interface_names);
   if (!result->trajectory.interface_names) return status_no_memory("the names of interfaces");

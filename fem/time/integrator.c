@@ -10,6 +10,7 @@
 
 #include "base/memory.h"
 #include "base/ranks.h"
+#include "fem/effect/contact/contact.h"
 #include "fem/model/limits.h"
 #include "fem/time/error_weights.h"
 #include "fem/time/newton/balance.h"
@@ -117,7 +118,10 @@ static void aim(void *self, double tolerance) {
 
 static double unbalance(void *self, const double *balance) {
   FemIntegrator *integrator = self;
-  return fem_balance_excess(&integrator->balance, integrator->system, &integrator->part, balance);
+  const ContactEvaluation *contact;
+  if (fem_effect_contact_evaluate(integrator->system, integrator->state, &contact)) return INFINITY;
+  return fem_balance_excess(&integrator->balance, integrator->system, contact ? contact->given_forces : NULL,
+                            &integrator->part, balance);
 }
 
 static Status check_def(const FemIntegratorDef *def) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // contact/system: energy, forces and stiffness of every potential, obstacles, audit.
 #include "blocks.h"
+#include "evaluated.h"
 #include "product.h"
 
 #include "base/memory.h"
@@ -65,16 +66,14 @@ static void destroy(Fixture *f) {
 }
 
 static double energy_at(const Fixture *f, const double *x) {
-  double energy;
-  ck_assert_ok(contact_system_eval(f->system, 0, x, &energy, NULL));
-  return energy;
+  return evaluated_at(f->system, 0, x)->energy;
 }
 
 // Owned by the caller (free).
 static double *forces_at(const Fixture *f, const double *x) {
-  double energy, *force = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
+  double *force = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(force);
-  ck_assert_ok(contact_system_eval(f->system, 0, x, &energy, force));
+  evaluated_with_force(f->system, x, force);
   return force;
 }
 
@@ -96,7 +95,7 @@ static double *random_motion(const Fixture *f, uint64_t stream, bool obstacles_m
 static Product multiply(const Fixture *f, const double *d) {
   Product product = product_of(d, f->blocks.vertex_count);
   ContactStiffnessSink sink = product_sink(&product);
-  ck_assert_ok(contact_system_stiffness(f->system, 0, f->blocks.x, &sink));
+  ck_assert_ok(contact_system_stiffness(f->system, evaluated_at(f->system, 0, f->blocks.x), &sink));
   return product;
 }
 
@@ -108,8 +107,9 @@ static Fixture *fixture_of(int i) {
 START_TEST(forces_are_minus_the_gradient_of_the_energy) {
   Fixture *f = fixture_of(_i);
   double *x = blocks_copy(&f->blocks), *force = forces_at(f, f->blocks.x);
-  ck_assert_int_gt(contact_system_active_count(f->system), 20);
-  ck_assert(energy_at(f, f->blocks.x) > 0);
+  const ContactEvaluation *evaluation = evaluated_at(f->system, 0, f->blocks.x);
+  ck_assert_int_gt(contact_evaluation_active_count(evaluation), 20);
+  ck_assert(evaluation->energy > 0);
   for (uint64_t k = 0; k < 10; k++) {
     double h = 1e-6, *d = random_motion(f, k, true);
     step_to(f, h, d, x);
@@ -181,15 +181,15 @@ START_TEST(two_bodies_keep_momentum_and_angular_momentum) {
   ck_assert(size > 0);
   ck_assert_near(vec3_length(vec3_at(sum)), 0, 1e-13 * size);
   ck_assert_near(vec3_length(vec3_at(torque)), 0, NUDGE * size);
-  int count;
-  const ContactInterface *interfaces = contact_system_interfaces(f->system, &count);
-  ck_assert_int_eq(count, 1);
+  const ContactEvaluation *evaluation = evaluated_at(f->system, 0, f->blocks.x);
+  const ContactInterface *interfaces = evaluation->interfaces;
+  ck_assert_int_eq(contact_system_layout(f->system)->interface_count, 1);
   ck_assert_int_eq(interfaces[0].a, 0);
   ck_assert_int_eq(interfaces[0].b, 1);
-  ck_assert_int_eq(interfaces[0].active_count, contact_system_active_count(f->system));
+  ck_assert_int_eq(interfaces[0].active_count, contact_evaluation_active_count(evaluation));
   for (int c = 0; c < 3; c++) ck_assert_near(interfaces[0].force[c], on_a[c], 1e-13 * size);
   ck_assert(on_a[2] < 0); // the lower body is pushed down
-  const double *forces = contact_system_forces(f->system);
+  const double *forces = evaluation->given_forces;
   for (int k = 0; k < 3 * f->blocks.vertex_count; k++) ck_assert_near(forces[k], force[k], 0);
   free(force), destroy(f);
 }
@@ -197,18 +197,18 @@ END_TEST
 
 START_TEST(covered_volumes_sum_to_the_overlap) {
   Fixture *f = pressed_system(CONTACT_POTENTIAL_NODAL, false);
-  energy_at(f, f->blocks.x);
-  const double *covered = contact_system_covered(f->system);
+  const ContactEvaluation *evaluation = evaluated_at(f->system, 0, f->blocks.x);
+  const double *covered = evaluation->given_covered;
   double sum[2] = {0};
   for (int b = 0; b < 2; b++)
     for (int i = f->blocks.bodies[b].tet_begin; i < f->blocks.bodies[b].tet_end; i++) sum[b] += covered[i];
-  int count, active, *tets;
+  int active, *tets;
   double *pairs;
-  const ContactInterface *interface = contact_system_interfaces(f->system, &count);
+  const ContactInterface *interface = evaluation->interfaces;
   ck_assert(interface->volume > 0);
   ck_assert_near(sum[0], interface->volume, 1e-13 * interface->volume);
   ck_assert_near(sum[1], interface->volume, 1e-13 * interface->volume);
-  ck_assert_ok(contact_system_active_pairs(f->system, &active, &pairs, &tets));
+  ck_assert_ok(contact_system_active_pairs(f->system, evaluation, &active, &pairs, &tets));
   ck_assert_int_eq(active, interface->active_count);
   for (int k = 0; k < active; k++)
     for (int s = 0; s < 2; s++)
@@ -252,10 +252,10 @@ START_TEST(a_tip_in_a_halfspace_is_as_by_hand) {
   double pressures[] = {
       [CONTACT_POTENTIAL_NODAL] = kappa * W / V, [CONTACT_POTENTIAL_FIELD] = kappa * W / dW};
   Fixture *f = single_tet(s, (ContactPotential)_i, NULL);
-  ck_assert_near(energy_at(f, f->blocks.x), energies[_i], 1e-13 * energies[_i]);
-  int count;
-  const ContactInterface *interface = contact_system_interfaces(f->system, &count);
-  ck_assert_int_eq(count, 1);
+  const ContactEvaluation *evaluation = evaluated_at(f->system, 0, f->blocks.x);
+  const ContactInterface *interface = evaluation->interfaces;
+  ck_assert_near(evaluation->energy, energies[_i], 1e-13 * energies[_i]);
+  ck_assert_int_eq(contact_system_layout(f->system)->interface_count, 1);
   ck_assert_int_eq(interface->b, 1); // body_count + 0
   ck_assert_near(interface->volume, W, 1e-15);
   ck_assert_near(interface->force[2], pressures[_i] * dW, 1e-12 * pressures[_i]);
@@ -268,8 +268,7 @@ END_TEST
 START_TEST(a_halfspace_moves_with_its_velocity) {
   Fixture *moving = single_tet(0.2, CONTACT_POTENTIAL_NODAL, (double[]){7, 0, 0.5});
   Fixture *still = single_tet(0.25, CONTACT_POTENTIAL_NODAL, NULL);
-  double energy;
-  ck_assert_ok(contact_system_eval(moving->system, 0.1, moving->blocks.x, &energy, NULL));
+  double energy = evaluated_at(moving->system, 0.1, moving->blocks.x)->energy;
   ck_assert_near(energy, energy_at(still, still->blocks.x), 1e-12 * energy);
   destroy(moving), destroy(still);
 }
@@ -333,11 +332,9 @@ START_TEST(a_third_body_does_not_change_the_force_between_two) {
   prepare(three);
   ContactSystemDef def = blocks_def(&three->blocks, three->rest, &three->model);
   start(three, &def);
-  energy_at(two, two->blocks.x), energy_at(three, three->blocks.x);
-  int count;
-  const ContactInterface *alone = contact_system_interfaces(two->system, &count);
-  const ContactInterface *with = contact_system_interfaces(three->system, &count);
-  ck_assert_int_eq(count, 3);
+  const ContactInterface *alone = evaluated_at(two->system, 0, two->blocks.x)->interfaces;
+  const ContactInterface *with = evaluated_at(three->system, 0, three->blocks.x)->interfaces;
+  ck_assert_int_eq(contact_system_layout(three->system)->interface_count, 3);
   ck_assert_int_gt(with[1].active_count, 0);
   for (int c = 0; c < 3; c++) ck_assert_near(with[0].force[c], alone[0].force[c], 0);
   destroy(two), destroy(three);
@@ -349,9 +346,10 @@ START_TEST(bodies_apart_have_no_energy_and_no_force) {
   blocks_shift(&f->blocks, f->blocks.x, 1, (double[]){0, 0, 5});
   ck_assert_ok(contact_system_update(f->system, 0, f->blocks.x, f->still, 0.01, NULL));
   double *force = forces_at(f, f->blocks.x);
-  ck_assert_near(energy_at(f, f->blocks.x), 0, 0);
+  const ContactEvaluation *evaluation = evaluated_at(f->system, 0, f->blocks.x);
+  ck_assert_near(evaluation->energy, 0, 0);
   for (int k = 0; k < 3 * f->blocks.vertex_count; k++) ck_assert_near(force[k], 0, 0);
-  ck_assert_int_eq(contact_system_active_count(f->system), 0);
+  ck_assert_int_eq(contact_evaluation_active_count(evaluation), 0);
   free(force), destroy(f);
 }
 END_TEST
@@ -369,7 +367,8 @@ static Status eval_scaled(const void *self, const double pair[24], const Overlap
 START_TEST(an_audit_measures_a_known_error_and_changes_nothing) {
   static const OverlapOps SCALED = {.name = "scaled", .eval_pair = eval_scaled};
   Fixture *f = pressed_system(CONTACT_POTENTIAL_NODAL, false);
-  double energy = energy_at(f, f->blocks.x), *moved = blocks_copy(&f->blocks);
+  const ContactEvaluation *evaluation = evaluated_at(f->system, 0, f->blocks.x);
+  double energy = evaluation->energy, *moved = blocks_copy(&f->blocks);
   blocks_shift(&f->blocks, moved, 1, (double[]){0, 0, 0.05});
   ContactCounters before = *contact_system_counters(f->system);
   OverlapModel scaled = {&SCALED, &f->model};
@@ -385,7 +384,7 @@ START_TEST(an_audit_measures_a_known_error_and_changes_nothing) {
   ck_assert_near(contact_audit_error(audit.gradient), 0, 0);
   ck_assert_near(contact_audit_error(audit.force), 0, 0);
   ck_assert_near(contact_audit_error(audit.total), 0, 0);
-  ck_assert_near(energy_at(f, f->blocks.x), energy, 0);
+  ck_assert_near(evaluation->energy, energy, 0);
   ck_assert_int_eq(contact_system_counters(f->system)->evaluations, before.evaluations);
   free(moved), destroy(f);
 }
@@ -426,8 +425,8 @@ START_TEST(a_model_that_answers_nan_is_named) {
   OverlapModel broken = {&BROKEN, &f->model};
   ContactSystemDef def = blocks_def(&f->blocks, f->rest, &broken);
   start(f, &def);
-  double energy;
-  ck_assert_int_eq(contact_system_eval(f->system, 0, f->blocks.x, &energy, NULL), STATUS_SOLVER);
+  const ContactEvaluation *evaluation;
+  ck_assert_int_eq(contact_evaluate(f->system, 0, 0, f->blocks.x, &evaluation), STATUS_SOLVER);
   ck_assert_ptr_nonnull(strstr(status_message(), "element"));
   destroy(f);
 }
@@ -451,12 +450,12 @@ static Status whole_life(const Fixture *f) {
   ContactStiffnessSink sink = {NULL, ignore_outer, ignore_dense};
   ContactSystem *system = NULL;
   ContactAudit audit;
-  double energy;
+  const ContactEvaluation *evaluation;
   Status status = contact_system_create(&system, &def);
   if (!status) status = contact_system_update(system, 0, f->blocks.x, f->still, 0.01, NULL);
-  if (!status) status = contact_system_eval(system, 0, f->blocks.x, &energy, NULL);
-  if (!status) status = contact_system_stiffness(system, 0, f->blocks.x, &sink);
-  if (!status) status = contact_system_couple(system, 0.1, NULL, ignore_clique);
+  if (!status) status = contact_evaluate(system, 0, 0, f->blocks.x, &evaluation);
+  if (!status) status = contact_system_stiffness(system, evaluation, &sink);
+  if (!status) status = contact_system_couple(system, evaluation, 0.1, NULL, ignore_clique);
   if (!status) status = contact_system_audit(system, 0, f->blocks.x, &f->model, &f->model, &audit);
   contact_system_destroy(system);
   return status;

@@ -2,6 +2,7 @@
 // contact/system over a run: which candidates are kept, how far bodies may move, when a contact begins, what
 // the stiffness may couple; evaluation changes nothing.
 #include "blocks.h"
+#include "evaluated.h"
 
 #include <omp.h>
 
@@ -74,10 +75,13 @@ typedef struct Result {
 static Result result_at(const Fixture *f, ContactSystem *system, double time, const double *x) {
   Result result = {.force = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double))};
   ck_assert_ptr_nonnull(result.force);
-  result.status = contact_system_eval(system, time, x, &result.energy, result.force);
-  int count;
-  result.interface = *contact_system_interfaces(system, &count);
-  result.active_count = contact_system_active_count(system);
+  const ContactEvaluation *evaluation;
+  result.status = contact_evaluate(system, 0, time, x, &evaluation);
+  if (result.status) return result;
+  contact_system_add_force(system, evaluation, result.force);
+  result.energy = evaluation->energy;
+  result.interface = evaluation->interfaces[0];
+  result.active_count = contact_evaluation_active_count(evaluation);
   return result;
 }
 
@@ -134,14 +138,12 @@ START_TEST(motion_beyond_the_margin_is_refused_and_changes_nothing) {
   Fixture *f = two_blocks(-0.2, 0.1);
   double m = default_margin(f), *x = moved(f, 0, 0, -1.01 * m);
   Result before = result_at(f, f->system, 0, f->blocks.x);
-  ContactInterface at_rest = before.interface;
+  const ContactEvaluation *kept = evaluated_at(f->system, 0, f->blocks.x);
   Result refused = result_at(f, f->system, 0, x);
   ck_assert_int_eq(refused.status, STATUS_RETRY);
   ck_assert_int_eq(contact_system_counters(f->system)->beyond_margin, 1);
-  ck_assert_mem_eq(&refused.interface, &at_rest, sizeof at_rest);
-  for (int k = 0; k < 3 * f->blocks.vertex_count; k++) ck_assert_near(refused.force[k], 0, 0);
-  ck_assert_mem_eq(contact_system_forces(f->system), before.force,
-                   3 * sizeof(double) * (size_t)f->blocks.vertex_count);
+  ck_assert_mem_eq(&kept->interfaces[0], &before.interface, sizeof before.interface);
+  ck_assert_mem_eq(kept->given_forces, before.force, 3 * sizeof(double) * (size_t)f->blocks.vertex_count);
   x[3 * f->blocks.bodies[1].vertex_begin] = NAN;
   Result nan = result_at(f, f->system, 0, x);
   ck_assert_int_eq(nan.status, STATUS_RETRY);
@@ -162,25 +164,36 @@ END_TEST
 
 START_TEST(one_thread_and_two_give_the_same_bits) {
   Fixture *f = two_blocks(-0.2, 0.1);
-  double *x = moved(f, 0.01, 0, 0);
   omp_set_num_threads(1);
   Result one = result_at(f, f->system, 0, f->blocks.x);
-  free(result_at(f, f->system, 0, x).force); // leaves the cached result
   omp_set_num_threads(2);
   check_same(f, one, result_at(f, f->system, 0, f->blocks.x));
-  free(x), destroy(f);
+  destroy(f);
 }
 END_TEST
 
-START_TEST(the_same_positions_are_evaluated_once) {
+// How often the system has evaluated after one more call.
+static int evaluations_after(const Fixture *f, long long version, const double *x, Status expected) {
+  const ContactEvaluation *evaluation;
+  ck_assert_int_eq(contact_evaluate(f->system, version, 0, x, &evaluation), expected);
+  return (int)contact_system_counters(f->system)->evaluations;
+}
+
+START_TEST(a_version_is_evaluated_once_as_long_as_no_other_is) {
   Fixture *f = two_blocks(-0.2, 0.1);
-  free(result_at(f, f->system, 0, f->blocks.x).force);
-  long long evaluations = contact_system_counters(f->system)->evaluations;
-  free(result_at(f, f->system, 0, f->blocks.x).force);
-  ck_assert_int_eq(contact_system_counters(f->system)->evaluations, evaluations);
-  free(result_at(f, f->system, 1, f->blocks.x).force); // another time
-  ck_assert_int_eq(contact_system_counters(f->system)->evaluations, evaluations + 1);
-  destroy(f);
+  double *x = moved(f, 0, 0, 1), *here = f->blocks.x;
+  ck_assert_int_eq(evaluations_after(f, 7, here, STATUS_OK), 1);
+  ck_assert_int_eq(evaluations_after(f, 7, here, STATUS_OK), 1);
+  ck_assert_int_eq(evaluations_after(f, 8, here, STATUS_OK), 2);
+  ck_assert_int_eq(evaluations_after(f, 0, here, STATUS_OK), 3); // none
+  ck_assert_int_eq(evaluations_after(f, 0, here, STATUS_OK), 4);
+  ck_assert_int_eq(evaluations_after(f, 7, here, STATUS_OK), 5);
+  ck_assert_int_eq(evaluations_after(f, 9, x, STATUS_RETRY), 5); // too far, and nothing is lost
+  ck_assert_int_eq(evaluations_after(f, 7, here, STATUS_OK), 5);
+  // What is held changes the results.
+  ck_assert_ok(contact_system_hold(f->system, 0, here, f->velocities, 0.01, NULL));
+  ck_assert_int_eq(evaluations_after(f, 7, here, STATUS_OK), 6);
+  free(x), destroy(f);
 }
 END_TEST
 
@@ -282,7 +295,7 @@ static void look_up_dense(void *self, int count, const int *vertices, const doub
 
 static int missing_at(Couplings *couplings, ContactSystem *system, const double *x) {
   couplings->missing = 0;
-  ck_assert_ok(contact_system_stiffness(system, 0, x,
+  ck_assert_ok(contact_system_stiffness(system, evaluated_at(system, 0, x),
                                         &(ContactStiffnessSink){couplings, look_up_outer, look_up_dense}));
   return couplings->missing;
 }
@@ -296,9 +309,9 @@ START_TEST(couplings_hold_the_stiffness_here_and_within_reach) {
   size_t n = (size_t)f->blocks.vertex_count;
   Couplings here = {.vertex_count = (int)n, .may = calloc(n * n, 1)};
   Couplings near = {.vertex_count = (int)n, .may = calloc(n * n, 1)};
-  free(result_at(f, f->system, 0, f->blocks.x).force);
-  ck_assert_ok(contact_system_couple(f->system, 0, &here, allow_clique));
-  ck_assert_ok(contact_system_couple(f->system, 0.3, &near, allow_clique));
+  const ContactEvaluation *evaluation = evaluated_at(f->system, 0, f->blocks.x);
+  ck_assert_ok(contact_system_couple(f->system, evaluation, 0, &here, allow_clique));
+  ck_assert_ok(contact_system_couple(f->system, evaluation, 0.3, &near, allow_clique));
   ck_assert_int_gt(here.clique_count, 0);
   ck_assert_int_eq(missing_at(&here, f->system, f->blocks.x), 0);
   ck_assert_int_eq(missing_at(&near, f->system, f->blocks.x), 0);
@@ -316,11 +329,12 @@ static Status refuse_clique(void *visitor, int count, const int *vertices) {
 
 START_TEST(a_visitor_that_fails_ends_the_visit) {
   Fixture *f = two_blocks(-0.2, 0.1);
-  free(result_at(f, f->system, 0, f->blocks.x).force);
-  ck_assert_int_eq(contact_system_couple(f->system, 0, NULL, refuse_clique), STATUS_MEMORY);
+  const ContactEvaluation *evaluation = evaluated_at(f->system, 0, f->blocks.x);
+  ck_assert_int_eq(contact_system_couple(f->system, evaluation, 0, NULL, refuse_clique), STATUS_MEMORY);
   Couplings all = {.vertex_count = f->blocks.vertex_count};
   all.may = calloc((size_t)all.vertex_count * (size_t)all.vertex_count, 1);
-  ck_assert_ok(contact_system_couple(f->system, 0, &all, allow_clique)); // and leaves nothing behind
+  ck_assert_ok(
+      contact_system_couple(f->system, evaluation, 0, &all, allow_clique)); // and leaves nothing behind
   ck_assert_int_eq(missing_at(&all, f->system, f->blocks.x), 0);
   free(all.may), destroy(f);
 }
@@ -333,7 +347,7 @@ int main(void) {
   tcase_add_test(cases, motion_beyond_the_margin_is_refused_and_changes_nothing);
   tcase_add_test(cases, a_rejected_trial_leaves_no_trace);
   tcase_add_test(cases, one_thread_and_two_give_the_same_bits);
-  tcase_add_test(cases, the_same_positions_are_evaluated_once);
+  tcase_add_test(cases, a_version_is_evaluated_once_as_long_as_no_other_is);
   tcase_add_test(cases, bodies_far_apart_may_move_as_far_as_they_are_apart);
   tcase_add_test(cases, a_fast_body_is_stopped_at_the_surface_and_not_behind_it);
   tcase_add_test(cases, a_halfspace_that_rises_beyond_the_margin_is_refused);

@@ -10,6 +10,7 @@
 // Inside: three elements from the border, so that no vertex that its force depends on reaches the border. A
 // slide starts where the meshes are in general position, or where all of their planes coincide.
 #include "blocks.h"
+#include "evaluated.h"
 
 #include <stdio.h>
 
@@ -64,8 +65,7 @@ typedef struct Quality {
   double pressure;   // mean over the surface
 } Quality;
 
-static Quality inspect(const Slabs *slabs, int body) {
-  const double *force = contact_system_forces(slabs->system);
+static Quality inspect(const Slabs *slabs, const double *force, int body) {
   double sum = 0, first = 0, squares = 0, tangential = 0, inner = 0, outwards = body == 0 ? -1 : 1;
   double surface = body == 0 ? 0 : slabs->rest[3 * slabs->blocks.bodies[1].vertex_begin + 2];
   double reach = UPPER_WIDTH / 2.0 - 3, edge = body == 0 ? 1 : slabs->ratio;
@@ -89,8 +89,7 @@ static Quality inspect(const Slabs *slabs, int body) {
 }
 
 // Σ|f_t| / Σ|f_n| over all vertices of the lower slab, and the sideways force on all of it by the normal one.
-static void inspect_all(const Slabs *slabs, double *scattered, double *net) {
-  const double *force = contact_system_forces(slabs->system);
+static void inspect_all(const Slabs *slabs, const double *force, double *scattered, double *net) {
   double total[3] = {0}, tangential = 0, normal = 0;
   for (int v = 0; v < slabs->blocks.bodies[0].vertex_end; v++) {
     for (int c = 0; c < 3; c++) total[c] += force[3 * v + c];
@@ -111,18 +110,18 @@ static Worst slide(ContactPotential potential, double ratio, double depth, bool 
   make(&slabs, potential, ratio, depth, is_aligned);
   Worst worst = {0};
   for (int k = 0; k < SLIDES; k++) {
-    double energy, scattered, net;
+    double scattered, net;
     ck_assert_ok(contact_system_update(slabs.system, 0, slabs.blocks.x, slabs.velocities, 0.01, NULL));
-    ck_assert_ok(contact_system_eval(slabs.system, 0, slabs.blocks.x, &energy, NULL));
-    ck_assert_int_gt(contact_system_active_count(slabs.system), 100);
+    const ContactEvaluation *evaluation = evaluated_at(slabs.system, 0, slabs.blocks.x);
+    ck_assert_int_gt(contact_evaluation_active_count(evaluation), 100);
     for (int body = 0; body < 2; body++) {
-      Quality q = inspect(&slabs, body), *w = &worst.of[body];
+      Quality q = inspect(&slabs, evaluation->given_forces, body), *w = &worst.of[body];
       w->evenness = suite_larger(w->evenness, q.evenness);
       w->tangential = suite_larger(w->tangential, q.tangential);
       w->inner = suite_larger(w->inner, q.inner);
       w->pressure += q.pressure / SLIDES;
     }
-    inspect_all(&slabs, &scattered, &net);
+    inspect_all(&slabs, evaluation->given_forces, &scattered, &net);
     worst.scattered = suite_larger(worst.scattered, scattered), worst.net = suite_larger(worst.net, net);
     blocks_shift(&slabs.blocks, slabs.blocks.x, 1, (double[]){0.1, 0, 0});
     slabs.centre[0] += 0.1;

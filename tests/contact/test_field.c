@@ -12,7 +12,7 @@ START_TEST(forces_are_minus_the_gradient_of_the_energy) {
   int n = 3 * scene.blocks.vertex_count;
   double *x = blocks_copy(&scene.blocks), *force = forces_at(&scene, scene.blocks.x);
   double size = sqrt(product_dot(force, force, n));
-  ck_assert_int_gt(contact_system_active_count(scene.system), 10);
+  ck_assert_int_gt(contact_evaluation_active_count(evaluated_at(scene.system, 0, scene.blocks.x)), 10);
   ck_assert(size > 0);
   for (uint64_t k = 0; k < 10; k++) {
     double *d = random_motion(&scene, k, true), length = sqrt(product_dot(d, d, n));
@@ -37,7 +37,8 @@ START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
     double *below = forces_at(&scene, x);
     Product product = product_of(d, scene.blocks.vertex_count);
     ContactStiffnessSink sink = product_sink(&product);
-    ck_assert_ok(contact_system_stiffness(scene.system, 0, scene.blocks.x, &sink));
+    ck_assert_ok(
+        contact_system_stiffness(scene.system, evaluated_at(scene.system, 0, scene.blocks.x), &sink));
     double size = sqrt(product_dot(product.y, product.y, n));
     ck_assert(size > 0);
     for (int v = 0; v < scene.blocks.vertex_count; v++)
@@ -60,7 +61,8 @@ START_TEST(the_main_term_is_not_negative) {
     double *d = random_motion(&scene, k, false);
     Product product = product_of(d, scene.blocks.vertex_count);
     ContactStiffnessSink sink = product_sink(&product);
-    ck_assert_ok(contact_system_stiffness(scene.system, 0, scene.blocks.x, &sink));
+    ck_assert_ok(
+        contact_system_stiffness(scene.system, evaluated_at(scene.system, 0, scene.blocks.x), &sink));
     ck_assert(product_dot(product.y, product.y, n) > 0);
     ck_assert(product_dot(product.y, d, n) >= 0);
     free(d), free(product.y);
@@ -79,9 +81,8 @@ START_TEST(every_pair_balances_with_every_model) {
   Scene scene = {.system = NULL};
   press_blocks(&scene, false);
   start(&scene, MODELS[_i], true);
-  energy_at(&scene, scene.blocks.x);
   const ContactLayout *layout = contact_system_layout(scene.system);
-  const ContactEvaluation *evaluation = contact_system_evaluation(scene.system);
+  const ContactEvaluation *evaluation = evaluated_at(scene.system, 0, scene.blocks.x);
   ck_assert_int_gt(evaluation->pair_count, 50);
   double worst_force = 0, worst_torque = 0, largest = 0;
   for (int k = 0; k < evaluation->pair_count; k++) {
@@ -224,11 +225,10 @@ START_TEST(traces_tell_pressure_and_depth_at_the_surface) {
   blocks_add(&scene.blocks,
              &(BlockDef){.corner = {-1.93, -1.81, -depth}, .cell = {0.77, 0.77, 0.77}, .cells = {5, 5, 2}});
   start(&scene, "clip", true);
-  energy_at(&scene, scene.blocks.x);
   size_t count = (size_t)scene.blocks.vertex_count;
   double *p = calloc(count, sizeof *p), *d = calloc(count, sizeof *d);
   ck_assert(p && d);
-  ck_assert_ok(contact_system_trace(scene.system, p, d));
+  ck_assert_ok(contact_system_trace(scene.system, evaluated_at(scene.system, 0, scene.blocks.x), p, d));
   int inside = 0, pressed = 0;
   for (int v = 0; v < scene.blocks.vertex_count; v++) {
     const double *x = scene.blocks.x + 3 * v;
@@ -379,7 +379,6 @@ START_TEST(viscosity_presses_by_depth_and_speed) {
   blocks_add(&scene.blocks,
              &(BlockDef){.corner = {-1.1, -0.9, -depth}, .cell = {1, 1, 1}, .cells = {2, 2, 2}});
   start(&scene, "clip", true);
-  energy_at(&scene, scene.blocks.x);
   ContactViscosity law;
   ContactViscosityPower power;
   ck_assert_ok(contact_viscosity_create(&law, scene.system, coefficient));
@@ -388,8 +387,9 @@ START_TEST(viscosity_presses_by_depth_and_speed) {
   double *force = calloc(3 * (size_t)scene.blocks.vertex_count, sizeof *force);
   ck_assert(v && force);
   for (int a = upper->vertex_begin; a < upper->vertex_end; a++) v[3 * a + 2] = -speed;
-  contact_viscosity_add_force(&law, v, force);
-  power = contact_viscosity_power(&law, v);
+  ContactViscosityMotion motion = {evaluated_at(scene.system, 0, scene.blocks.x), v};
+  contact_viscosity_add_force(&law, motion, force);
+  power = contact_viscosity_power(&law, motion);
   for (int k = 3 * upper->vertex_begin; k < 3 * upper->vertex_end; k++) total[k % 3] += force[k];
   double expected =
       coefficient * depth * speed * area; // of one term; the lower block's slope is 1 all over it

@@ -151,7 +151,8 @@ START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
       double *below = forces_at(&scene, x);
       Product product = product_of(d, scene.blocks.vertex_count);
       ContactStiffnessSink sink = product_sink(&product);
-      ck_assert_ok(contact_system_stiffness(scene.system, 0, scene.blocks.x, &sink));
+      ck_assert_ok(
+          contact_system_stiffness(scene.system, evaluated_at(scene.system, 0, scene.blocks.x), &sink));
       double size = sqrt(product_dot(product.y, product.y, n)), square = 0;
       for (int i = 0; i < n; i++) {
         int body = i / 3 < scene.blocks.bodies[0].vertex_end ? 0 : 1;
@@ -182,7 +183,7 @@ START_TEST(energy_force_and_stiffness_are_a_taylor_series) {
   double *force = forces_at(&scene, scene.blocks.x), energy = energy_at(&scene, scene.blocks.x);
   Product product = product_of(d, scene.blocks.vertex_count);
   ContactStiffnessSink sink = product_sink(&product);
-  ck_assert_ok(contact_system_stiffness(scene.system, 0, scene.blocks.x, &sink));
+  ck_assert_ok(contact_system_stiffness(scene.system, evaluated_at(scene.system, 0, scene.blocks.x), &sink));
   for (int k = 0; k < 2; k++) {
     double h = 4e-3 / (1 + k);
     step_to(&scene, h, d, x);
@@ -201,8 +202,7 @@ START_TEST(every_pair_balances) {
   press_on(&scene, ON_BODY);
   scene.law = &law;
   start(&scene, _i == ROWS ? "tpn-scene" : "clip", true);
-  energy_at(&scene, scene.blocks.x);
-  const ContactEvaluation *evaluation = contact_system_evaluation(scene.system);
+  const ContactEvaluation *evaluation = evaluated_at(scene.system, 0, scene.blocks.x);
   const ContactLayout *layout = contact_system_layout(scene.system);
   double worst = 0, largest = 0;
   for (int k = 0; k < evaluation->pair_count; k++) {
@@ -242,7 +242,6 @@ static unsigned char *mark_sides(const Scene *scene, double width) {
 // NULL: with the floor. `area`: as contact tells it.
 static double flat_pressure(const ContactLaw *law, double depth, const char *model, double *area) {
   Scene scene = {.law = law};
-  int count;
   if (model)
     blocks_add(&scene.blocks, &(BlockDef){.corner = {0, 0, -2}, .cell = {1, 1, 1}, .cells = {4, 4, 2}});
   blocks_add(&scene.blocks,
@@ -255,7 +254,7 @@ static double flat_pressure(const ContactLaw *law, double depth, const char *mod
   double *force = forces_at(&scene, scene.blocks.x), total = 0;
   const ContactBody *upper = &scene.blocks.bodies[scene.blocks.body_count - 1];
   for (int v = upper->vertex_begin; v < upper->vertex_end; v++) total += force[3 * v + 2];
-  *area = contact_system_interfaces(scene.system, &count)[0].area;
+  *area = evaluated_at(scene.system, 0, scene.blocks.x)->interfaces[0].area;
   free(force), free(inner), destroy(&scene);
   return total / 16;
 }

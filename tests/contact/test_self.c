@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // contact/self: a body that meets itself.
 #include "blocks.h"
+#include "evaluated.h"
 #include "product.h"
 
 #include "base/memory.h"
@@ -85,10 +86,9 @@ static Fixture *rolled_strip(ContactPotential potential) {
 }
 
 static double eval(Fixture *f, const double *x, double *force) {
-  double energy;
-  if (force) memset(force, 0, 3 * sizeof(double) * (size_t)f->blocks.vertex_count);
-  ck_assert_ok(contact_system_eval(f->system, 0, x, &energy, force));
-  return energy;
+  if (!force) return evaluated_at(f->system, 0, x)->energy;
+  memset(force, 0, 3 * sizeof(double) * (size_t)f->blocks.vertex_count);
+  return evaluated_with_force(f->system, x, force)->energy;
 }
 
 static double *random_motion(const Fixture *f, uint64_t stream) {
@@ -102,7 +102,7 @@ static double *random_motion(const Fixture *f, uint64_t stream) {
 static double *multiply(Fixture *f, const double *d) {
   Product product = product_of(d, f->blocks.vertex_count);
   ContactStiffnessSink sink = product_sink(&product);
-  ck_assert_ok(contact_system_stiffness(f->system, 0, f->x, &sink));
+  ck_assert_ok(contact_system_stiffness(f->system, evaluated_at(f->system, 0, f->x), &sink));
   return product.y;
 }
 
@@ -112,8 +112,10 @@ START_TEST(parts_of_a_body_press_each_other_as_two_bodies_would) {
   int n = 3 * one->blocks.vertex_count;
   double *force = random_motion(one, 0), *expected = random_motion(one, 0), *d = random_motion(one, 1);
   double energy = eval(one, one->x, force), energy_of_two = eval(two, two->x, expected);
-  ck_assert_int_gt(contact_system_active_count(one->system), 20);
-  ck_assert_int_eq(contact_system_active_count(one->system), contact_system_active_count(two->system));
+  const ContactEvaluation *within = evaluated_at(one->system, 0, one->x),
+                          *across = evaluated_at(two->system, 0, two->x);
+  ck_assert_int_gt(contact_evaluation_active_count(within), 20);
+  ck_assert_int_eq(contact_evaluation_active_count(within), contact_evaluation_active_count(across));
   // The nudges differ: heights by up to 2 NUDGE of an overlap 0.3 deep, sides by more of what is cut there.
   ck_assert_near(energy, energy_of_two, 100 * NUDGE * energy);
   double size = sqrt(product_dot(expected, expected, n));
@@ -121,11 +123,9 @@ START_TEST(parts_of_a_body_press_each_other_as_two_bodies_would) {
   double *product = multiply(one, d), *product_of_two = multiply(two, d);
   double product_size = sqrt(product_dot(product_of_two, product_of_two, n));
   for (int k = 0; k < n; k++) ck_assert_near(product[k], product_of_two[k], 1e-5 * product_size);
-  int count;
-  const ContactInterface *own = contact_system_interfaces(one->system, &count);
-  ck_assert_int_eq(count, 1);
-  const ContactInterface *between = contact_system_interfaces(two->system, &count);
-  ck_assert_int_eq(count, 1);
+  const ContactInterface *own = within->interfaces, *between = across->interfaces;
+  ck_assert_int_eq(contact_system_layout(one->system)->interface_count, 1);
+  ck_assert_int_eq(contact_system_layout(two->system)->interface_count, 1);
   for (int c = 0; c < 3; c++)
     ck_assert_near(own->force[c], between->force[c], 1e-5 * vec3_length(vec3_at(between->force)));
   free(force), free(expected), free(d), free(product), free(product_of_two), destroy(one), destroy(two);
@@ -137,7 +137,7 @@ START_TEST(forces_within_a_body_are_minus_the_gradient_and_balance) {
   int n = 3 * f->blocks.vertex_count;
   double *force = random_motion(f, 0), *x = random_motion(f, 0);
   eval(f, f->x, force);
-  ck_assert_int_gt(contact_system_active_count(f->system), 20);
+  ck_assert_int_gt(contact_evaluation_active_count(evaluated_at(f->system, 0, f->x)), 20);
   double size = sqrt(product_dot(force, force, n));
   Vec3 sum = {0, 0, 0}, torque = {0, 0, 0};
   for (int v = 0; v < f->blocks.vertex_count; v++) {
@@ -219,10 +219,10 @@ static bool share_vertex(const int a[4], const int b[4]) {
 
 START_TEST(every_pair_that_overlaps_is_found) {
   Fixture *f = rolled_strip(CONTACT_POTENTIAL_NODAL);
-  eval(f, f->x, NULL);
   int expected = 0, count, *tets;
   double *pairs;
-  ck_assert_ok(contact_system_active_pairs(f->system, &count, &pairs, &tets));
+  ck_assert_ok(
+      contact_system_active_pairs(f->system, evaluated_at(f->system, 0, f->x), &count, &pairs, &tets));
   for (int i = 0; i < f->blocks.tet_count; i++)
     for (int j = i + 1; j < f->blocks.tet_count; j++) {
       double x[24], volume;
@@ -261,11 +261,11 @@ END_TEST
 
 START_TEST(motion_within_a_body_beyond_the_margin_is_refused) {
   Fixture *f = rolled_strip(CONTACT_POTENTIAL_NODAL);
-  double energy;
+  const ContactEvaluation *evaluation;
   for (int v = 0; v < f->blocks.vertex_count; v++) f->x[3 * v] *= 1.5;
-  ck_assert_int_eq(contact_system_eval(f->system, 0, f->x, &energy, NULL), STATUS_RETRY);
+  ck_assert_int_eq(contact_evaluate(f->system, 0, 0, f->x, &evaluation), STATUS_RETRY);
   f->x[0] = NAN;
-  ck_assert_int_eq(contact_system_eval(f->system, 0, f->x, &energy, NULL), STATUS_RETRY);
+  ck_assert_int_eq(contact_evaluate(f->system, 0, 0, f->x, &evaluation), STATUS_RETRY);
   destroy(f);
 }
 END_TEST

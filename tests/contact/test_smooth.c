@@ -11,6 +11,7 @@
 #include "contact/surface/stars.h"
 #include "contact/surface/surface.h"
 #include "contact/system.h"
+#include "evaluated.h"
 #include "fem/mesh/mesh.h"
 #include "product.h"
 #include "suite.h"
@@ -327,7 +328,7 @@ static void destroy(Scene *scene) {
 static double *forces_at(const Scene *scene, const double *x, double *energy) {
   double *force = calloc(3 * (size_t)scene->vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(force);
-  ck_assert_ok(contact_system_eval(scene->system, 0, x, energy, force));
+  *energy = evaluated_with_force(scene->system, x, force)->energy;
   return force;
 }
 
@@ -344,7 +345,7 @@ START_TEST(forces_balance_and_are_minus_the_gradient_of_the_energy) {
   double *x = calloc((size_t)n, sizeof *x), h = 1e-5, norms = 0, energy[4], steps[4] = {-2, -1, 1, 2};
   Vec3 sum = {0, 0, 0}, torque = {0, 0, 0};
   ck_assert(d && x);
-  ck_assert_int_gt(contact_system_active_count(scene.system), 50);
+  ck_assert_int_gt(contact_evaluation_active_count(evaluated_at(scene.system, 0, scene.x)), 50);
   for (int v = 0; v < scene.vertex_count; v++) {
     Vec3 f = vec3_at(force + 3 * v);
     sum = vec3_add(sum, f), torque = vec3_add(torque, vec3_cross(vec3_at(scene.x + 3 * v), f));
@@ -357,7 +358,7 @@ START_TEST(forces_balance_and_are_minus_the_gradient_of_the_energy) {
   for (int k = 0; k < n; k++) d[k] = random_between(&random, -1, 1);
   for (int i = 0; i < 4; i++) {
     step_to(&scene, steps[i] * h, d, x);
-    ck_assert_ok(contact_system_eval(scene.system, 0, x, &energy[i], NULL));
+    energy[i] = evaluated_at(scene.system, 0, x)->energy;
   }
   double slope = (8 * (energy[2] - energy[1]) - (energy[3] - energy[0])) / (12 * h);
   ck_assert_near(slope, -product_dot(force, d, n),
@@ -380,7 +381,7 @@ START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
   double *below = forces_at(&scene, x, &energy);
   Product product = product_of(d, scene.vertex_count);
   ContactStiffnessSink sink = product_sink(&product);
-  ck_assert_ok(contact_system_stiffness(scene.system, 0, scene.x, &sink));
+  ck_assert_ok(contact_system_stiffness(scene.system, evaluated_at(scene.system, 0, scene.x), &sink));
   double size = sqrt(product_dot(product.y, product.y, n));
   ck_assert(size > 0);
   for (int i = 0; i < n; i++) ck_assert_near(-(above[i] - below[i]) / (2 * h), product.y[i], 1e-6 * size);

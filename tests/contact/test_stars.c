@@ -9,6 +9,7 @@
 #include "contact/surface/stars.h"
 #include "contact/system.h"
 #include "curved.h"
+#include "evaluated.h"
 #include "product.h"
 
 static const double STIFFNESS = 1000;
@@ -105,15 +106,13 @@ static void press_boxes(Scene *scene, const char *model) {
 }
 
 static double energy_at(const Scene *scene, const double *x) {
-  double energy;
-  ck_assert_ok(contact_system_eval(scene->system, 0, x, &energy, NULL));
-  return energy;
+  return evaluated_at(scene->system, 0, x)->energy;
 }
 
 static double *forces_at(const Scene *scene, const double *x) {
-  double energy, *force = calloc(3 * (size_t)scene->vertex_count, sizeof(double));
+  double *force = calloc(3 * (size_t)scene->vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(force);
-  ck_assert_ok(contact_system_eval(scene->system, 0, x, &energy, force));
+  evaluated_with_force(scene->system, x, force);
   return force;
 }
 
@@ -141,7 +140,7 @@ START_TEST(an_even_pressure_loads_the_middles_of_edges) {
   double *force = forces_at(&scene, scene.x), face = STIFFNESS * depth / 2; // a triangle's: p times its area
   int corners = 0, middles = 0;
   ck_assert_int_le(scene.vertex_count, 500);
-  ck_assert_ok(contact_system_trace(scene.system, pressures, depths));
+  ck_assert_ok(contact_system_trace(scene.system, evaluated_at(scene.system, 0, scene.x), pressures, depths));
   for (int v = 0; v < scene.vertex_count; v++) {
     const double *X = scene.rest + 3 * v;
     bool is_inside =
@@ -166,7 +165,7 @@ START_TEST(forces_are_minus_the_gradient_of_the_energy) {
   double *x = calloc((size_t)n, sizeof *x), *force = forces_at(&scene, scene.x), h = 1e-5;
   ck_assert_ptr_nonnull(x);
   double size = sqrt(product_dot(force, force, n));
-  ck_assert_int_gt(contact_system_active_count(scene.system), 50);
+  ck_assert_int_gt(contact_evaluation_active_count(evaluated_at(scene.system, 0, scene.x)), 50);
   for (uint64_t k = 0; k < 10; k++) {
     double *d = random_motion(&scene, k), length = sqrt(product_dot(d, d, n)), energy[4],
            steps[4] = {-2, -1, 1, 2};
@@ -196,7 +195,7 @@ START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
     double *below = forces_at(&scene, x);
     Product product = product_of(d, scene.vertex_count);
     ContactStiffnessSink sink = product_sink(&product);
-    ck_assert_ok(contact_system_stiffness(scene.system, 0, scene.x, &sink));
+    ck_assert_ok(contact_system_stiffness(scene.system, evaluated_at(scene.system, 0, scene.x), &sink));
     double size = sqrt(product_dot(product.y, product.y, n));
     ck_assert(size > 0);
     for (int i = 0; i < n; i++) ck_assert_near(-(above[i] - below[i]) / (2 * h), product.y[i], 1e-6 * size);
@@ -213,7 +212,7 @@ START_TEST(pairs_and_nodes_balance_with_every_model) {
   press_boxes(&scene, MODELS[_i]);
   double *force = forces_at(&scene, scene.x), norms = 0, worst = 0, largest = 0;
   const ContactLayout *layout = contact_system_layout(scene.system);
-  const ContactEvaluation *evaluation = contact_system_evaluation(scene.system);
+  const ContactEvaluation *evaluation = evaluated_at(scene.system, 0, scene.x);
   ck_assert_int_gt(evaluation->pair_count, 50);
   for (int k = 0; k < evaluation->pair_count; k++) {
     Vec3 sum = {0, 0, 0}, torque = {0, 0, 0};
@@ -248,16 +247,16 @@ START_TEST(viscosity_acts_on_the_nodes) {
   ContactViscosity law;
   ContactViscosityPower power;
   press_boxes(&scene, "clip");
-  energy_at(&scene, scene.x);
   ck_assert_ok(contact_viscosity_create(&law, scene.system, 3));
   int n = 3 * scene.vertex_count;
   double *v = random_motion(&scene, 1), *force = calloc((size_t)n, sizeof *force);
   ck_assert_ptr_nonnull(force);
-  contact_viscosity_add_force(&law, v, force);
-  power = contact_viscosity_power(&law, v);
+  ContactViscosityMotion motion = {evaluated_at(scene.system, 0, scene.x), v};
+  contact_viscosity_add_force(&law, motion, force);
+  power = contact_viscosity_power(&law, motion);
   Product product = product_of(v, scene.vertex_count);
   ContactStiffnessSink sink = product_sink(&product);
-  contact_viscosity_add_damping(&law, v, 1, &sink);
+  contact_viscosity_add_damping(&law, motion, 1, &sink);
   double size = sqrt(product_dot(force, force, n));
   ck_assert(power.dissipated > 0);
   ck_assert_near(product_dot(force, v, n), -power.dissipated, 1e-12 * power.dissipated);
@@ -269,10 +268,9 @@ END_TEST
 START_TEST(what_is_covered_adds_up_by_the_given_elements) {
   Scene scene;
   press_boxes(&scene, "clip");
-  energy_at(&scene, scene.x);
-  int count;
-  const double *covered = contact_system_covered(scene.system);
-  double volume = contact_system_interfaces(scene.system, &count)[0].volume, sums[2] = {0, 0};
+  const ContactEvaluation *evaluation = evaluated_at(scene.system, 0, scene.x);
+  const double *covered = evaluation->given_covered;
+  double volume = evaluation->interfaces[0].volume, sums[2] = {0, 0};
   for (int b = 0; b < 2; b++)
     for (int e = scene.bodies[b].tet_begin; e < scene.bodies[b].tet_end; e++) sums[b] += covered[e];
   ck_assert(volume > 0);

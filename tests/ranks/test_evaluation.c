@@ -110,8 +110,9 @@ static Status find_answer(FemSystem *system, FemState *state, const Variant *var
   TRY(fem_system_forces(system, state));
   memcpy(answer->forces, system->forces, (size_t)answer->values * sizeof(double));
   TRY(fem_system_energy(system, state, &answer->energy));
-  void *contact = fem_system_effect(system, &fem_effect_contact);
-  answer->pairs = contact ? contact_system_active_count(fem_effect_contact_system(contact)) : 0;
+  const ContactEvaluation *contact;
+  TRY(fem_effect_contact_evaluate(system, state, &contact));
+  answer->pairs = contact ? contact_evaluation_active_count(contact) : 0;
   TRY(multiply(system, state, answer));
   return kind == FEM_SOLVER_AUTO ? STATUS_OK : solve(system, kind, answer);
 }

@@ -18,8 +18,9 @@ static const double SHALLOWEST = 0.3, ACROSS = 0.4;
 typedef struct Walker {
   const OverlapModel *model;
   ContactSystem *system;
-  double *force;   // on vertices                                        (vertex_count, 3)
-  double total[3]; // on the upper body
+  const ContactEvaluation *evaluation; // of this place
+  double *force;                       // on vertices                                        (vertex_count, 3)
+  double total[3];                     // on the upper body
   double normal_sum;
   double net, turned_over; // Σ F·dx, Σ |F·dx|
   double seconds;
@@ -73,11 +74,11 @@ static void move_to(Walk *walk, const double at[3]) {
 
 static Status evaluate(Walker *walker, const Walk *walk, const double along[3], double step) {
   const AppUnseenMesh *mesh = walk->mesh;
-  double energy;
   memset(walker->force, 0, 3 * (size_t)mesh->vertex_count * sizeof(double));
   TRY(contact_system_update(walker->system, 0, walk->x, walk->velocity, 1, NULL));
-  TRY(contact_system_eval(walker->system, 0, walk->x, &energy, walker->force));
-  const ContactEvaluation *evaluation = contact_system_evaluation(walker->system);
+  TRY(contact_evaluate(walker->system, 0, 0, walk->x, &walker->evaluation));
+  const ContactEvaluation *evaluation = walker->evaluation;
+  contact_system_add_force(walker->system, evaluation, walker->force);
   walker->normal_sum = 0;
   for (int i = 0; i < evaluation->mesh_pair_count; i++)
     walker->normal_sum += vec3_length(vec3_at(evaluation->fields[i].force));
@@ -115,7 +116,7 @@ static void add_pair(Walk *walk, const double pair[24], int i) {
 static Status compare_pairs(Walk *walk) {
   int count, *tets;
   double *pairs;
-  TRY(contact_system_active_pairs(walk->truth.system, &count, &pairs, &tets));
+  TRY(contact_system_active_pairs(walk->truth.system, walk->truth.evaluation, &count, &pairs, &tets));
   Status status = STATUS_OK;
   for (int first = 0; first < count && !status; first += walk->capacity) {
     int some = count - first < walk->capacity ? count - first : walk->capacity;

@@ -84,10 +84,12 @@ static double machine_memory(void) {
 static Status note_overlaps(const AppJob *job, Notes *notes) {
   FemSystem system = {0};
   TRY(fem_system_create(&system, &job->model));
+  const ContactEvaluation *contact;
   FemEnergy energy;
   Status status = fem_system_energy(&system, &system.accepted, &energy);
+  if (!status) status = fem_effect_contact_evaluate(&system, &system.accepted, &contact);
   for (int k = 0, i = 0; !status && k < MAX_OVERLAPS; k++, i++) {
-    i = fem_run_start_overlap(&system, i, notes->overlaps[k], sizeof notes->overlaps[k]);
+    i = fem_run_start_overlap(&system, contact, i, notes->overlaps[k], sizeof notes->overlaps[k]);
     if (i < 0) break;
     note(notes, true, notes->overlaps[k]);
   }

@@ -64,7 +64,8 @@ static Status capture_pairs(DatagenCapture *capture, FemSystem *system) {
   if (!effect) return STATUS_OK;
   int count;
   const double *pairs;
-  TRY(contact_system_near_pairs(fem_effect_contact_system(effect), &count, &pairs));
+  TRY(contact_system_near_pairs(fem_effect_contact_system(effect), system->accepted.time,
+                                system->accepted.positions, &count, &pairs));
   return datagen_capture_append(capture, pairs, count);
 }
 

@@ -197,18 +197,23 @@ static Status add_clique(void *visitor, int count, const int *vertices) {
   return fem_pattern_add_clique(coupling->pattern, count, vertices, coupling->has_grown);
 }
 
+static Status evaluate(Contact *contact, const FemState *state, const ContactEvaluation **evaluation) {
+  return contact_evaluate(contact->system, state->version, state->time, state->positions, evaluation);
+}
+
 static Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
   Contact *contact = self;
-  double energy;
-  TRY(contact_system_eval(contact->system, state->time, state->positions, &energy, NULL));
+  const ContactEvaluation *evaluation;
+  TRY(evaluate(contact, state, &evaluation));
   Coupling coupling = {.pattern = pattern, .has_grown = has_grown};
-  return contact_system_couple(contact->system, contact->reach, &coupling, add_clique);
+  return contact_system_couple(contact->system, evaluation, contact->reach, &coupling, add_clique);
 }
 
 static Status add_force(void *self, const FemState *state, double *force) {
   Contact *contact = self;
-  double energy;
-  TRY(contact_system_eval(contact->system, state->time, state->positions, &energy, force));
+  const ContactEvaluation *evaluation;
+  TRY(evaluate(contact, state, &evaluation));
+  contact_system_add_force(contact->system, evaluation, force);
   if (!state->is_held) contact_system_add_resting(contact->system, force);
   return STATUS_OK;
 }
@@ -218,18 +223,20 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
   (void)damping_scale; // contact does not damp
   Contact *contact = self;
   if (stiffness_scale == 0) return STATUS_OK;
+  const ContactEvaluation *evaluation;
+  TRY(evaluate(contact, state, &evaluation));
   FemContactSink sink = {.matrix = matrix, .scale = stiffness_scale};
   const ContactStiffnessSink to = fem_contact_sink_of(&sink);
-  return contact_system_stiffness(contact->system, state->time, state->positions, &to);
+  return contact_system_stiffness(contact->system, evaluation, &to);
 }
 
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   Contact *contact = self;
-  double contact_energy;
-  TRY(contact_system_eval(contact->system, state->time, state->positions, &contact_energy, NULL));
-  energy->contact += contact_energy;
+  const ContactEvaluation *evaluation;
+  TRY(evaluate(contact, state, &evaluation));
+  energy->contact += evaluation->energy;
   // Mesh obstacles are prescribed coordinates, which the system counts.
-  energy->driven_power += contact_system_shape_power(contact->system);
+  energy->driven_power += contact_system_shape_power(contact->system, evaluation);
   return STATUS_OK;
 }
 
@@ -281,6 +288,13 @@ const FemEffectOps fem_effect_contact = {
 
 ContactSystem *fem_effect_contact_system(void *effect) {
   return ((Contact *)effect)->system;
+}
+
+Status fem_effect_contact_evaluate(const FemSystem *system, const FemState *state,
+                                   const ContactEvaluation **evaluation) {
+  Contact *contact = fem_system_effect(system, &fem_effect_contact);
+  *evaluation = NULL;
+  return contact ? evaluate(contact, state, evaluation) : STATUS_OK;
 }
 
 const char *fem_effect_contact_name(const void *effect, int number) {

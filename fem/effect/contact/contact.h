@@ -4,10 +4,15 @@
 #define TETLAP_FEM_EFFECT_CONTACT_H
 
 #include "contact/system.h"
+#include "fem/effect/system.h"
 #include "fem/scene/scene.h"
 
 // The contact system of the effect that fem_system_effect(system, &fem_effect_contact) returned; borrowed.
 ContactSystem *fem_effect_contact_system(void *effect);
+
+// Contact at a state (contact_evaluate). NULL: the scene has none.
+Status fem_effect_contact_evaluate(const FemSystem *system, const FemState *state,
+                                   const ContactEvaluation **evaluation);
 
 // The name of side `number` of an interface: a body, a mesh obstacle or a half-space.
 const char *fem_effect_contact_name(const void *effect, int number);

@@ -34,7 +34,7 @@ static Status create(void **self, const FemModel *model) {
 
 static Status create_law(Stick *stick, int count, double *coefficients, ContactStickLaw *laws) {
   const FemModel *model = stick->model;
-  const ContactInterface *interfaces = contact_system_interfaces(stick->contact, &count);
+  const ContactInterfaceDef *interfaces = contact_system_layout(stick->contact)->interfaces;
   for (int i = 0; i < count; i++)
     coefficients[i] = fem_compliance_friction(model, interfaces[i].a, interfaces[i].b);
   contact_stick_pairs_laws(stick->contact, coefficients, laws);
@@ -46,10 +46,9 @@ static Status create_law(Stick *stick, int count, double *coefficients, ContactS
 
 static Status connect(void *self, const FemSystem *system) {
   Stick *stick = self;
-  int count;
   stick->place = fem_system_place(system, &fem_effect_stick);
   stick->contact = fem_effect_contact_system(fem_system_effect(system, &fem_effect_contact));
-  contact_system_interfaces(stick->contact, &count);
+  int count = contact_system_layout(stick->contact)->interface_count;
   stick->is_resting = memory_zeroed((size_t)count, sizeof *stick->is_resting);
   double *coefficients = memory_zeroed((size_t)count, sizeof *coefficients);
   ContactStickLaw *laws = memory_zeroed((size_t)count, sizeof *laws);
@@ -72,16 +71,16 @@ static ContactStickHistory history_of(const Stick *stick, const FemState *accept
   return contact_stick_history_view(stick->law.interface_count, history->values, history->count);
 }
 
-// The friction at a state, which is evaluated once.
-static Status evaluate(Stick *stick, const FemState *state) {
+// The friction at a state, which is evaluated once, and the contact that it is of.
+static Status evaluate(Stick *stick, const FemState *state, const ContactEvaluation **evaluation) {
   const FemState *last = state->last;
-  double energy;
-  TRY(contact_system_eval(stick->contact, state->time, state->positions, &energy, NULL));
+  TRY(contact_evaluate(stick->contact, state->version, state->time, state->positions, evaluation));
   if (stick->version == state->version && stick->last_version == last->version) return STATUS_OK;
   ContactStickLast before = {.positions = contact_system_place(stick->contact, last->positions),
                              .history = history_of(stick, last)};
   stick->version = 0;
-  TRY(contact_stick_pairs_eval(&stick->law, stick->contact, &before, last->time, stick->is_resting));
+  TRY(contact_stick_pairs_eval(&stick->law, stick->contact, *evaluation, &before, last->time,
+                               stick->is_resting));
   stick->version = state->version;
   stick->last_version = last->version;
   return STATUS_OK;
@@ -97,7 +96,8 @@ static Status start(void *self, const FemState *state, FemEffectHistory *history
 
 static Status advance(void *self, const FemState *state, FemEffectHistory *next) {
   Stick *stick = self;
-  TRY(evaluate(stick, state));
+  const ContactEvaluation *evaluation;
+  TRY(evaluate(stick, state, &evaluation));
   const ContactStickHistory history = history_of(stick, state->last);
   TRY(fem_effect_history_resize(next, contact_stick_next_count(&stick->law, &history, stick->is_resting)));
   contact_stick_advance(&stick->law, &history, stick->is_resting, next->values);
@@ -124,14 +124,16 @@ static Status add_clique(void *visitor, int count, const int *vertices) {
 
 static Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
   Stick *stick = self;
-  TRY(evaluate(stick, state));
+  const ContactEvaluation *evaluation;
+  TRY(evaluate(stick, state, &evaluation));
   Coupling coupling = {.contact = stick->contact, .pattern = pattern, .has_grown = has_grown};
   return contact_stick_couple(&stick->law, &coupling, add_clique);
 }
 
 static Status add_force(void *self, const FemState *state, double *force) {
   Stick *stick = self;
-  TRY(evaluate(stick, state));
+  const ContactEvaluation *evaluation;
+  TRY(evaluate(stick, state, &evaluation));
   contact_stick_add_force(&stick->law, force);
   return STATUS_OK;
 }
@@ -141,7 +143,8 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
   (void)damping_scale; // it depends on positions only
   Stick *stick = self;
   if (stiffness_scale == 0) return STATUS_OK;
-  TRY(evaluate(stick, state));
+  const ContactEvaluation *evaluation;
+  TRY(evaluate(stick, state, &evaluation));
   FemContactSink sink = {.matrix = matrix, .scale = stiffness_scale};
   const ContactStiffnessSink to = fem_contact_sink_of(&sink);
   return contact_stick_add_stiffness(&stick->law, contact_system_sink(stick->contact, &to));
@@ -149,11 +152,14 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
 
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   Stick *stick = self;
-  TRY(evaluate(stick, state));
+  const ContactEvaluation *evaluation;
+  TRY(evaluate(stick, state, &evaluation));
   energy->contact += stick->law.stored;
   energy->friction_work += *history_of(stick, state->last).dissipated + stick->law.spent;
-  energy->driven_power += contact_stick_pairs_shape_power(&stick->law, stick->contact);
-  energy->turned_power += contact_stick_pairs_turned_power(&stick->law, stick->contact, state->velocities);
+  energy->driven_power +=
+      contact_stick_pairs_shape_power(&stick->law, contact_system_layout(stick->contact), evaluation);
+  energy->turned_power +=
+      contact_stick_pairs_turned_power(&stick->law, stick->contact, evaluation, state->velocities);
   return STATUS_OK;
 }
 
@@ -189,6 +195,9 @@ const FemEffectOps fem_effect_stick = {
     .destroy = destroy,
 };
 
-const ContactStick *fem_effect_stick_of(const void *effect) {
-  return &((const Stick *)effect)->law;
+Status fem_effect_stick_evaluate(void *effect, const FemState *state, const ContactStick **law) {
+  Stick *stick = effect;
+  const ContactEvaluation *evaluation;
+  *law = &stick->law;
+  return evaluate(stick, state, &evaluation);
 }

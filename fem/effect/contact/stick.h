@@ -4,8 +4,10 @@
 #define TETLAP_FEM_EFFECT_STICK_H
 
 #include "contact/friction/stick.h"
+#include "fem/effect/state.h"
 
-// The law of the effect that fem_system_effect(system, "stick") returned, as it was evaluated last; borrowed.
-const ContactStick *fem_effect_stick_of(const void *effect);
+// The law of the effect that fem_system_effect(system, &fem_effect_stick) returned, as it is at a state; the
+// effect's, valid until it is asked for another one.
+Status fem_effect_stick_evaluate(void *effect, const FemState *state, const ContactStick **law);
 
 #endif

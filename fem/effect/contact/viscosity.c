@@ -39,16 +39,17 @@ static void destroy(void *self) {
   memory_free(viscosity);
 }
 
-// Contact has evaluated these positions already, except where only energies are computed.
-static Status evaluate(const Viscosity *viscosity, const FemState *state) {
-  double energy;
-  return contact_system_eval(viscosity->contact, state->time, state->positions, &energy, NULL);
+static Status find_motion(const Viscosity *viscosity, const FemState *state, ContactViscosityMotion *motion) {
+  motion->velocities = state->velocities;
+  return contact_evaluate(viscosity->contact, state->version, state->time, state->positions,
+                          &motion->evaluation);
 }
 
 static Status add_force(void *self, const FemState *state, double *force) {
   Viscosity *viscosity = self;
-  TRY(evaluate(viscosity, state));
-  contact_viscosity_add_force(&viscosity->law, state->velocities, force);
+  ContactViscosityMotion motion;
+  TRY(find_motion(viscosity, state, &motion));
+  contact_viscosity_add_force(&viscosity->law, motion, force);
   return STATUS_OK;
 }
 
@@ -58,15 +59,17 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
   Viscosity *viscosity = self;
   FemContactSink sink = {.matrix = matrix, .scale = 1};
   const ContactStiffnessSink to = fem_contact_sink_of(&sink);
-  TRY(evaluate(viscosity, state));
-  contact_viscosity_add_damping(&viscosity->law, state->velocities, damping_scale, &to);
+  ContactViscosityMotion motion;
+  TRY(find_motion(viscosity, state, &motion));
+  contact_viscosity_add_damping(&viscosity->law, motion, damping_scale, &to);
   return STATUS_OK;
 }
 
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   Viscosity *viscosity = self;
-  TRY(evaluate(viscosity, state));
-  ContactViscosityPower power = contact_viscosity_power(&viscosity->law, state->velocities);
+  ContactViscosityMotion motion;
+  TRY(find_motion(viscosity, state, &motion));
+  ContactViscosityPower power = contact_viscosity_power(&viscosity->law, motion);
   energy->dissipated_power += power.dissipated;
   energy->driven_power += power.driven;
   return STATUS_OK;
@@ -90,9 +93,12 @@ const FemEffectOps fem_effect_viscosity = {
     .destroy = destroy,
 };
 
-void fem_effect_viscosity_add(const void *effect, const double *velocities, double (*interfaces)[3],
-                              double *vertices) {
-  const ContactViscosity *law = &((const Viscosity *)effect)->law;
-  if (vertices) contact_viscosity_add_force(law, velocities, vertices);
-  if (interfaces) contact_viscosity_add_resultants(law, velocities, interfaces);
+Status fem_effect_viscosity_add(const void *effect, const FemState *state, double (*interfaces)[3],
+                                double *vertices) {
+  const Viscosity *viscosity = effect;
+  ContactViscosityMotion motion;
+  TRY(find_motion(viscosity, state, &motion));
+  if (vertices) contact_viscosity_add_force(&viscosity->law, motion, vertices);
+  if (interfaces) contact_viscosity_add_resultants(&viscosity->law, motion, interfaces);
+  return STATUS_OK;
 }

@@ -3,10 +3,12 @@
 #ifndef TETLAP_FEM_EFFECT_VISCOSITY_H
 #define TETLAP_FEM_EFFECT_VISCOSITY_H
 
-// Adds the forces of the effect that fem_system_effect(system, &fem_effect_viscosity) returned, at contact's
-// last evaluation and these velocities: on the first side of each interface (interface_count, 3) and on the
-// vertices (vertex_count, 3) [N]; either NULL: not wanted.
-void fem_effect_viscosity_add(const void *effect, const double *velocities, double (*interfaces)[3],
-                              double *vertices);
+#include "fem/effect/state.h"
+
+// Adds the forces of the effect that fem_system_effect(system, &fem_effect_viscosity) returned, at a state:
+// on the first side of each interface (interface_count, 3) and on the vertices (vertex_count, 3) [N]; either
+// NULL: not wanted.
+Status fem_effect_viscosity_add(const void *effect, const FemState *state, double (*interfaces)[3],
+                                double *vertices);
 
 #endif

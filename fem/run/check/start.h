@@ -5,10 +5,11 @@
 
 #include <stddef.h>
 
-#include "fem/effect/system.h"
+#include "fem/effect/contact/contact.h"
 
-// The next two that overlap at the state that was evaluated last, from interface `from` on, in words; returns
-// its number, −1: no more.
-int fem_run_start_overlap(const FemSystem *system, int from, char *text, size_t size);
+// The next two that overlap by that evaluation of contact (NULL: there is none), from interface `from` on, in
+// words; returns its number, −1: no more.
+int fem_run_start_overlap(const FemSystem *system, const ContactEvaluation *contact, int from, char *text,
+                          size_t size);
 
 #endif

@@ -182,15 +182,15 @@ static unsigned char state_of(const FemRest *rest, int body, double time) {
 
 // Decides which bodies to hold, by what is near them now.
 static void decide(FemRest *rest, double time) {
-  int count;
-  const ContactInterface *interfaces = contact_system_interfaces(rest->contact, &count);
+  const ContactLayout *layout = contact_system_layout(rest->contact);
+  const ContactInterfaceDef *interfaces = layout->interfaces;
   for (int p = 0; p < rest->party_count; p++) {
     bool is_obstacle = p >= rest->body_count;
     rest->root[p] = p;
     rest->state[p] = is_obstacle ? 0 : state_of(rest, p, time);
     rest->next_held[p] = is_obstacle && next_change(rest, p, time) > time;
   }
-  for (int f = 0; f < count; f++) {
+  for (int f = 0; f < layout->interface_count; f++) {
     int low = interfaces[f].a < interfaces[f].b ? interfaces[f].a : interfaces[f].b,
         high = interfaces[f].a + interfaces[f].b - low;
     if (!contact_system_is_near(rest->contact, f)) continue;

@@ -6,7 +6,6 @@
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "base/vec3.h"
-#include "fem/effect/contact/contact.h"
 #include "fem/model/limits.h"
 
 Status fem_balance_create(FemBalance *balance, int body_count) {
@@ -44,17 +43,15 @@ static void sum_up(FemBalance *balance, const FemSystem *system, const FemPart *
   ranks()->sum(balance->needed, (size_t)model->body_count);
 }
 
-double fem_balance_excess(FemBalance *balance, FemSystem *system, const FemPart *part,
-                          const double *residual) {
+double fem_balance_excess(FemBalance *balance, const FemSystem *system, const double *pressing,
+                          const FemPart *part, const double *residual) {
   const FemModel *model = system->model;
-  void *contact = fem_system_effect(system, &fem_effect_contact);
-  const double *forces = contact ? contact_system_forces(fem_effect_contact_system(contact)) : NULL;
   double worst = 0, gravity = model->scene->has_gravity ? vec3_length(vec3_at(model->scene->gravity)) : 0;
   sum_up(balance, system, part, residual);
   for (int b = 0; b < model->scene->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
     double weight = gravity * body->mass;
-    if (forces && !(gravity > 0)) weight = pressed_on(forces, body);
+    if (pressing && !(gravity > 0)) weight = pressed_on(pressing, body);
     double needed = fmax(FEM_BALANCE * weight, FEM_BALANCE_OF_INERTIA * balance->needed[b]);
     // Without either: rounding of the force by which an element is strained by time.tolerance.
     double least = FEM_ROUNDING * model->scene->tolerance * body->material.young * model->edge * model->edge;

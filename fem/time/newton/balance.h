@@ -18,9 +18,9 @@ Status fem_balance_create(FemBalance *balance, int body_count);
 void fem_balance_destroy(FemBalance *balance);
 
 // The largest Σ |r| of a body over what is allowed [1], infinite where a residual is no number. `residual` is
-// M v̇ − f of this rank's unknowns at the state that the system's forces were evaluated at last [N]. By all
-// ranks.
-double fem_balance_excess(FemBalance *balance, FemSystem *system, const FemPart *part,
-                          const double *residual);
+// M v̇ − f of this rank's unknowns at the state that the system's forces were evaluated at last [N],
+// `pressing` contact's forces there (vertex_count, 3), NULL: none. By all ranks.
+double fem_balance_excess(FemBalance *balance, const FemSystem *system, const double *pressing,
+                          const FemPart *part, const double *residual);
 
 #endif

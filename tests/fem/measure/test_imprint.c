@@ -17,8 +17,11 @@ static void press(Pressed *pressed, const char *scene, const char *const *overri
   const FemModel *model = &pressed->run.model;
   ck_assert_ok(fem_system_create(&pressed->system, model));
   ck_assert_ok(fem_system_forces(&pressed->system, &pressed->system.accepted));
-  pressed->interfaces = contact_system_interfaces(
-      fem_effect_contact_system(fem_system_effect(&pressed->system, &fem_effect_contact)), &pressed->count);
+  const ContactEvaluation *evaluation;
+  ck_assert_ok(fem_effect_contact_evaluate(&pressed->system, &pressed->system.accepted, &evaluation));
+  pressed->interfaces = evaluation->interfaces;
+  void *effect = fem_system_effect(&pressed->system, &fem_effect_contact);
+  pressed->count = contact_system_layout(fem_effect_contact_system(effect))->interface_count;
 }
 
 static void release(Pressed *pressed) {

@@ -136,14 +136,15 @@ static void compare_forces(Replay *replay, const FemVtuContent *frame) {
   add(replay, &fem_effect_contact, replay->force);
   add(replay, &fem_effect_viscosity, replay->force);
   add(replay, &fem_effect_stick, replay->friction);
-  ck_assert_ok(contact_system_trace(contact_of(replay), replay->pressure, replay->depth));
+  const ContactEvaluation *contact;
+  ck_assert_ok(fem_effect_contact_evaluate(&replay->system, &replay->state, &contact));
+  ck_assert_ok(contact_system_trace(contact_of(replay), contact, replay->pressure, replay->depth));
   compare(replay, frame, "contact_force", 3 * vertices, replay->force);
   compare(replay, frame, "friction_force", 3 * vertices, replay->friction);
   compare(replay, frame, "contact_pressure", vertices, replay->pressure);
   compare(replay, frame, "contact_depth", vertices, replay->depth);
   replay->within += largest(3 * vertices, replay->force) > 0;
-  const double *covered = contact_system_covered(contact_of(replay)),
-               *share = find_field(frame, "overlap_fraction");
+  const double *covered = contact->given_covered, *share = find_field(frame, "overlap_fraction");
   for (int e = 0; e < model->tet_count; e++) ck_assert_near(share[e] * model->volumes[e], covered[e], 1e-18);
 }
 

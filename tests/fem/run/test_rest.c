@@ -2,6 +2,7 @@
 // Bodies that have come to rest: contact keeps what they press with, the run leaves them out, and something
 // that comes near, or a load, awakes them.
 #include "blocks.h"
+#include "evaluated.h"
 #include "scene.h"
 
 #include <unistd.h>
@@ -52,9 +53,7 @@ static void destroy(Pile *p) {
 }
 
 static double energy_of(Pile *p, const double *x) {
-  double energy;
-  ck_assert_ok(contact_system_eval(p->system, 0, x, &energy, NULL));
-  return energy;
+  return evaluated_at(p->system, 0, x)->energy;
 }
 
 static void hold(Pile *p, const bool *is_held) {
@@ -63,30 +62,31 @@ static void hold(Pile *p, const bool *is_held) {
 
 START_TEST(what_is_held_stays_in_the_results) {
   Pile *p = pile();
-  int count;
-  double energy = energy_of(p, p->blocks.x);
+  const ContactEvaluation *evaluation = evaluated_at(p->system, 0, p->blocks.x);
+  int count = contact_system_layout(p->system)->interface_count;
+  double energy = evaluation->energy;
   ck_assert_double_gt(energy, 0);
-  const ContactInterface *interfaces = contact_system_interfaces(p->system, &count);
   ContactInterface before[8];
-  memcpy(before, interfaces, (size_t)count * sizeof *before);
+  memcpy(before, evaluation->interfaces, (size_t)count * sizeof *before);
   size_t values = 3 * (size_t)p->blocks.vertex_count;
   double *forces = malloc(values * sizeof(double));
   ck_assert_ptr_nonnull(forces);
-  memcpy(forces, contact_system_forces(p->system), values * sizeof(double));
-  int pairs = contact_system_active_count(p->system);
+  memcpy(forces, evaluation->given_forces, values * sizeof(double));
+  int pairs = contact_evaluation_active_count(evaluation);
 
   hold(p, (const bool[]){true, true, false, true}); // the two lower blocks and the ground
   long long tried = contact_system_counters(p->system)->pairs.tried;
-  ck_assert_near(energy_of(p, p->blocks.x), energy, 1e-14 * energy);
+  evaluation = evaluated_at(p->system, 0, p->blocks.x);
+  ck_assert_near(evaluation->energy, energy, 1e-14 * energy);
   ck_assert_int_lt((int)(contact_system_counters(p->system)->pairs.tried - tried), pairs);
-  ck_assert_int_eq(contact_system_active_count(p->system), pairs);
-  interfaces = contact_system_interfaces(p->system, &count);
+  ck_assert_int_eq(contact_evaluation_active_count(evaluation), pairs);
+  const ContactInterface *interfaces = evaluation->interfaces;
   for (int i = 0; i < count; i++) {
     ck_assert_int_eq(interfaces[i].active_count, before[i].active_count);
     for (int c = 0; c < 3; c++) ck_assert_double_eq(interfaces[i].force[c], before[i].force[c]);
   }
   for (size_t k = 0; k < values; k++)
-    ck_assert_near(contact_system_forces(p->system)[k], forces[k], 1e-13 * fabs(before[0].force[2]));
+    ck_assert_near(evaluation->given_forces[k], forces[k], 1e-13 * fabs(before[0].force[2]));
 
   // The upper block moves off: what it pressed with is gone, the rest stands.
   double *x = blocks_copy(&p->blocks);
@@ -101,8 +101,8 @@ END_TEST
 
 START_TEST(near_is_what_was_near_when_it_was_held) {
   Pile *p = pile();
-  int count;
-  const ContactInterface *interfaces = contact_system_interfaces(p->system, &count);
+  int count = contact_system_layout(p->system)->interface_count;
+  const ContactInterfaceDef *interfaces = contact_system_layout(p->system)->interfaces;
   bool near[8], held[] = {true, true, true, true};
   for (int i = 0; i < count; i++) {
     near[i] = contact_system_is_near(p->system, i);

@@ -194,7 +194,9 @@ static Status look_at_line(void *self, const FemRunProgress *progress) {
   ContactSystem *contact =
       fem_effect_contact_system(fem_system_effect(progress->system, &fem_effect_contact));
   const FemModelBody *upper = &line->model->bodies[1];
-  ck_assert_ok(contact_system_trace(contact, line->pressures, line->depths));
+  const ContactEvaluation *evaluation;
+  ck_assert_ok(fem_effect_contact_evaluate(progress->system, &progress->system->accepted, &evaluation));
+  ck_assert_ok(contact_system_trace(contact, evaluation, line->pressures, line->depths));
   memset(line->by_x, 0, sizeof line->by_x);
   for (int v = upper->vertex_begin; v < upper->vertex_end; v++)
     if (fabs(line->model->rest[3 * v + 2] - 0.1) < 1e-9)

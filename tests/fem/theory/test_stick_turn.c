@@ -69,7 +69,8 @@ START_TEST(what_sticks_and_is_turned_as_a_whole_feels_the_same_forces) {
   ck_assert_ok(fem_system_accept(&system, &state, 0));
   ck_assert_ok(fem_system_forces(&system, &state));
   memcpy(before, system.forces, values * sizeof *before);
-  const ContactStick *law = fem_effect_stick_of(fem_system_effect(&system, &fem_effect_stick));
+  const ContactStick *law;
+  ck_assert_ok(fem_effect_stick_evaluate(fem_system_effect(&system, &fem_effect_stick), &state, &law));
   double pull = 0;
   for (int i = 0; i < law->interface_count; i++) pull = fmax(pull, vec3_length(vec3_at(law->forces[i])));
   ck_assert_double_gt(pull, 0.05);

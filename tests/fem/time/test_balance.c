@@ -27,7 +27,7 @@ static void open_balanced(Balanced *balanced, const char *const *overrides) {
 }
 
 static double excess(Balanced *balanced) {
-  return fem_balance_excess(&balanced->balance, &balanced->system, &balanced->part, balanced->residual);
+  return fem_balance_excess(&balanced->balance, &balanced->system, NULL, &balanced->part, balanced->residual);
 }
 
 static void close_balanced(Balanced *balanced) {
