@@ -16,7 +16,7 @@ static_assert(sizeof(FemAccuracyPair) == FEM_ACCURACY_KEPT * sizeof(double), "nu
 // A pair is estimated anew where its force has grown by as much as an estimate may err.
 static const double GROWN = 1 + FEM_DOUBT;
 // A peak this much above what two steps in a row have lasts one step.
-static const double BRIEF = 1.5;
+static const double BRIEF = 2;
 
 Status fem_accuracy_create(FemAccuracy *accuracy, const FemModel *model, const ContactSystem *contact) {
   *accuracy = (FemAccuracy){0};

@@ -93,8 +93,8 @@ static const double NOTHING = FEM_DOUBT * FEM_DOUBT;
 // With fewer elements across a patch its pressure has the mesh's shape, whatever the stiffness
 // (docs/contact.md).
 static const double RESOLVED = 5;
-// From this share of pressure times area on, the resultant is told alone.
-static const double ONE_WAY = 0.9;
+// Above this share of pressure times area the resultant is told alone.
+static const double ONE_WAY = 0.5;
 
 static void record_estimate(const FemEstimate *estimate, Record *record) {
   record_number(record, "give", estimate->give);

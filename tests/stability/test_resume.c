@@ -124,10 +124,11 @@ static void check_log(const char *word) {
 
 // What a clock or a machine says: seconds, memory, threads.
 static bool is_measured(const char *line) {
-  static const char *const words[] = {"_s\":",       "phases",        "broad_phase",   "\"contact\": ",
-                                      "\"forces\":", "\"assembly\":", "\"analysis\":", "\"factorisation\":",
-                                      "\"solve\":",  "\"output\":",   "\"other\":",    "peak_rss",
-                                      "bytes_max",   "\"threads\":"};
+  static const char *const words[] = {
+      "_s\":",         "phases",        "broad_phase",        "\"contact\": ", "\"forces\":",
+      "\"assembly\":", "\"analysis\":", "\"factorisation\":", "\"solve\":",    "\"output\":",
+      "\"other\":",    "\"start\":",    "\"layout\":",        "\"products\":", "\"integration\":",
+      "\"measures\":", "peak_rss",      "bytes_max",          "\"threads\":"};
   for (size_t k = 0; k < sizeof words / sizeof *words; k++)
     if (strstr(line, words[k])) return true;
   const char *overlap = strstr(line, "\"overlap\": "); // the phase's seconds, or the model's name
