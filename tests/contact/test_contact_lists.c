@@ -142,7 +142,8 @@ START_TEST(motion_beyond_the_margin_is_refused_and_changes_nothing) {
   Result refused = result_at(f, f->system, 0, x);
   ck_assert_int_eq(refused.status, STATUS_RETRY);
   ck_assert_int_eq(contact_system_counters(f->system)->beyond_margin, 1);
-  ck_assert_mem_eq(&kept->interfaces[0], &before.interface, sizeof before.interface);
+  ck_assert_mem_eq(kept->interfaces[0].force, before.interface.force, sizeof before.interface.force);
+  ck_assert_double_eq(kept->interfaces[0].volume, before.interface.volume);
   ck_assert_mem_eq(kept->given_forces, before.force, 3 * sizeof(double) * (size_t)f->blocks.vertex_count);
   x[3 * f->blocks.bodies[1].vertex_begin] = NAN;
   Result nan = result_at(f, f->system, 0, x);
