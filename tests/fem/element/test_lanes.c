@@ -312,7 +312,7 @@ START_TEST(packs_hold_each_element_of_bodies_once_and_colours_share_no_vertex) {
   FemPacks packs;
   build(&scene);
   ck_assert_ok(fem_packs_create(&packs, &scene.model, false, NULL));
-  ck_assert_int_gt(packs.chunk_count, 8);
+  ck_assert_int_gt(packs.chunk_count, 2);
   check_packs(&packs, &scene.model, 0, scene.model.bodies[1].tet_end);
   fem_packs_destroy(&packs);
   ck_assert_ok(fem_packs_create(&packs, &scene.model, false, has_density_two));
