@@ -241,6 +241,7 @@ static Meeting meeting_of(const FemModel *model, const Give *gives, int a, int b
   if (!meeting.is_curved) return meeting;
   meeting.radius = radius_between(model, gives, a, b, meeting.curvature);
   if (!meeting.is_hollow && meeting.radius * meeting.curvature > WIDE) return (Meeting){.is_curved = false};
+  if (!meeting.is_hollow && !(meeting.radius > 0)) return meeting; // 2 % hold, whatever the elements are
   double edge = fmax(one->roundness.edge, other->roundness.edge);
   meeting.layer = (meeting.is_hollow ? HOLLOW_GIVE : LAYER_GIVE / resolved_by(meeting.radius, edge)) *
                   (one->roundness.edge * one->give + other->roundness.edge * other->give);

@@ -30,7 +30,8 @@
 //
 //   c ≤ 1 / (.54 (h_A/E_A' + h_B/E_B')),     against a shape without elements twice that,
 //
-// h the edge there (contact/surface/roundness.h), unless an impact needs more. By Hertz the overlap of a
+// h the edge there (contact/surface/roundness.h), unless an impact needs more, or nothing tells how wide the
+// patch becomes: then it may be less than an element, and 2 % hold. By Hertz the overlap of a
 // patch of the radius N h is then as deep as .7 N sagittas of both. That of a patch by
 // fem/model/patch.h, or of what c
 // the scene says, decides about contact.smooth: the least level at which it is as deep as 1.1 sagittas of

@@ -61,7 +61,7 @@ double fem_patch_load(const FemModel *model, int party) {
   for (int l = 0; l < model->load_count; l++) {
     const FemLoad *load = &model->loads[l];
     Vec3 force = {0, 0, 0};
-    if (load->vertex_count == 0 || load->vertices[0] < of->vertex_begin ||
+    if (!load->force || load->vertex_count == 0 || load->vertices[0] < of->vertex_begin ||
         load->vertices[0] >= of->vertex_end)
       continue;
     for (int v = 0; v < load->vertex_count; v++) force = vec3_add(force, vec3_at(load->force + 3 * v));

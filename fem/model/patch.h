@@ -15,7 +15,8 @@
 
 // How far the party (bodies, then obstacles without elements) is moved by what drives it, at most [m].
 double fem_patch_travel(const FemModel *model, int party);
-// The largest load on a body, its weight included in a static scene; 0: an obstacle [N].
+// The largest resultant of the loads on a body (a torque has none), its weight included in a static scene; 0:
+// an obstacle [N].
 double fem_patch_load(const FemModel *model, int party);
 
 // a of two that curve by `curvature` > 0 [1/m]; `modulus`: E* [Pa]. The largest of those that δ, F and W

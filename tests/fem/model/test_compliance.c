@@ -2,6 +2,7 @@
 // The contact stiffness where surfaces curve, and how often their edges are halved.
 #include "fem/model/compliance.h"
 
+#include "fem/model/patch.h"
 #include "scene.h"
 
 static void choose(SceneRun *run, const char *name, const char *const *overrides, FemCompliance *choice) {
@@ -55,6 +56,27 @@ START_TEST(fewer_elements_in_a_patch_are_halved_more) {
 }
 END_TEST
 
+// A ball that is moved over a slab: no load, no blow and no static travel tells how wide its contact becomes.
+START_TEST(a_patch_that_nothing_tells_leaves_the_rule_of_the_bodies) {
+  SceneRun run;
+  FemCompliance choice;
+  choose(&run, "../../examples/11_rolling_ball", NULL, &choice);
+  ck_assert_int_eq(choice.bounds[1], FEM_COMPLIANCE_BODIES);
+  forget(&run, &choice);
+}
+END_TEST
+
+// It has no resultant, and no forces of vertices that would be summed.
+START_TEST(a_torque_tells_no_patch) {
+  SceneRun run;
+  FemCompliance choice;
+  choose(&run, "../../examples/validation/crossed",
+         (const char *const[]){"bodies.upper.loads=[{all: true, torque: [0, 1, 0]}]", NULL}, &choice);
+  ck_assert_double_eq(fem_patch_load(&run.model, 1), 0);
+  forget(&run, &choice);
+}
+END_TEST
+
 START_TEST(the_scene_has_the_last_word) {
   SceneRun run;
   FemCompliance choice;
@@ -72,6 +94,8 @@ int main(void) {
   tcase_add_test(tests, bodies_of_flat_faces_are_pressed_by_their_heights);
   tcase_add_test(tests, a_shaft_in_a_hole_is_no_stiffer_than_its_elements);
   tcase_add_test(tests, fewer_elements_in_a_patch_are_halved_more);
+  tcase_add_test(tests, a_patch_that_nothing_tells_leaves_the_rule_of_the_bodies);
+  tcase_add_test(tests, a_torque_tells_no_patch);
   tcase_add_test(tests, the_scene_has_the_last_word);
   return suite_run("compliance", tests, 60);
 }
