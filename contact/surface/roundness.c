@@ -7,9 +7,13 @@
 #include "base/memory.h"
 #include "contact/surface/smooth_points.h"
 
+typedef struct Weighed {
+  double value, area;
+} Weighed;
+
 // Facets by area, and what of them curves either way.
 typedef struct Facets {
-  double *edges, *round, *hollow; // (face_count, round_count, hollow_count)
+  Weighed *edges, *round, *hollow; // (face_count, round_count, hollow_count)
   int round_count, hollow_count;
   double area, round_area, hollow_area;
 } Facets;
@@ -37,20 +41,26 @@ static void add_facet(const ContactSmooth *smooth, int f, Facets *facets) {
     if (fabs(one) > fabs(most)) most = one;
   }
   facets->area += face->area;
-  if (most > 0) facets->round[facets->round_count++] = most, facets->round_area += face->area;
-  if (most < 0) facets->hollow[facets->hollow_count++] = -most, facets->hollow_area += face->area;
+  if (most > 0)
+    facets->round[facets->round_count++] = (Weighed){most, face->area}, facets->round_area += face->area;
+  if (most < 0)
+    facets->hollow[facets->hollow_count++] = (Weighed){-most, face->area}, facets->hollow_area += face->area;
 }
 
 static int compare(const void *left, const void *right) {
-  double a = *(const double *)left, b = *(const double *)right;
+  double a = ((const Weighed *)left)->value, b = ((const Weighed *)right)->value;
   return (a > b) - (a < b);
 }
 
-// The value below which one in `parts` is; 0 of none.
-static double quantile(double *values, int count, int parts) {
+// The value below which this share of the area is; 0 of none.
+static double quantile(Weighed *values, int count, double share) {
+  double area = 0, below = 0;
   if (count == 0) return 0;
   qsort(values, (size_t)count, sizeof *values, compare);
-  return values[count / parts];
+  for (int k = 0; k < count; k++) area += values[k].area;
+  for (int k = 0; k < count; k++)
+    if ((below += values[k].area) >= share * area) return values[k].value;
+  return values[count - 1].value;
 }
 
 static bool is_held(const ContactSmooth *smooth, const bool *held, int f) {
@@ -71,22 +81,22 @@ static double edge_of(const Facets *facets, const ContactSmooth *smooth, const b
   int count = 0;
   for (int f = 0; f < smooth->skin.face_count; f++)
     if (!is_held(smooth, held, f) && (is_flat || curves(smooth, f)))
-      facets->edges[count++] = sqrt(2 * smooth->skin.faces[f].area);
-  return quantile(facets->edges, count, 10);
+      facets->edges[count++] = (Weighed){sqrt(2 * smooth->skin.faces[f].area), 1};
+  return quantile(facets->edges, count, 0.1);
 }
 
 static Status look_at(const ContactSmooth *smooth, const bool *held, Facets *facets,
                       ContactRoundness *roundness) {
   size_t count = (size_t)smooth->skin.face_count;
-  facets->edges = memory_zeroed(count, sizeof(double));
-  facets->round = memory_zeroed(count, sizeof(double));
-  facets->hollow = memory_zeroed(count, sizeof(double));
+  facets->edges = memory_zeroed(count, sizeof(Weighed));
+  facets->round = memory_zeroed(count, sizeof(Weighed));
+  facets->hollow = memory_zeroed(count, sizeof(Weighed));
   if (!facets->edges || !facets->round || !facets->hollow) return status_no_memory("the curvature of a body");
   for (int f = 0; f < smooth->skin.face_count; f++)
     if (!is_held(smooth, held, f)) add_facet(smooth, f, facets);
   double least = facets->area / 20;
-  if (facets->round_area > least) roundness->round = quantile(facets->round, facets->round_count, 2);
-  if (facets->hollow_area > least) roundness->hollow = quantile(facets->hollow, facets->hollow_count, 2);
+  if (facets->round_area > least) roundness->round = quantile(facets->round, facets->round_count, 0.5);
+  if (facets->hollow_area > least) roundness->hollow = quantile(facets->hollow, facets->hollow_count, 0.5);
   roundness->edge = edge_of(facets, smooth, held, roundness->round == 0 && roundness->hollow == 0);
   return STATUS_OK;
 }

@@ -10,7 +10,7 @@
 // the surface counts as none.
 typedef struct ContactRoundness {
   double edge;   // of facets: a tenth of those that curve are finer; of all where none does [m]
-  double round;  // 1/R of the convex ones, the median; 0: there are none [1/m]
+  double round;  // 1/R of the convex ones, the median by area; 0: there are none [1/m]
   double hollow; // ... and of the concave ones [1/m]
 } ContactRoundness;
 

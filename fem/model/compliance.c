@@ -95,7 +95,14 @@ typedef struct Give {
   double give;    // (1 − HELD ν⁴)/E: of what is pressed between faces that hold it [1/Pa]
   double volume;  // V [m³]
   ContactRoundness roundness;
+  double low[3], high[3]; // the box around it at rest; of a shape without elements that of its radius [m]
 } Give;
+
+// What the whole scene tells of how hard its bodies meet.
+typedef struct Course {
+  double blow;   // the hardest [J]
+  double travel; // of what is driven in a static scene, the farthest [m]
+} Course;
 
 // Whether the body has vertices that cannot move, and others; `held` by vertices.
 static bool find_held(const FemModel *model, const FemModelBody *body, bool *held) {
@@ -131,15 +138,29 @@ static void measure_shapes(const FemModel *model, Give *gives) {
     if (def->kind == FEM_OBSTACLE_MESH) continue;
     if (def->kind == FEM_OBSTACLE_BALL || def->kind == FEM_OBSTACLE_CYLINDER)
       gives[party].roundness.round = 1 / def->radius;
+    for (int c = 0; c < 3; c++) {
+      gives[party].low[c] = def->point[c] - def->radius;
+      gives[party].high[c] = def->point[c] + def->radius;
+    }
     party++;
   }
+}
+
+static void measure_box(const FemModel *model, const FemModelBody *body, Give *give) {
+  for (int c = 0; c < 3; c++) give->low[c] = INFINITY, give->high[c] = -INFINITY;
+  for (int v = body->vertex_begin; v < body->vertex_end; v++)
+    for (int c = 0; c < 3; c++) {
+      give->low[c] = fmin(give->low[c], model->rest[3 * (size_t)v + (size_t)c]);
+      give->high[c] = fmax(give->high[c], model->rest[3 * (size_t)v + (size_t)c]);
+    }
 }
 
 static Status measure_bodies(const FemModel *model, Give *gives) {
   bool *held = memory_zeroed((size_t)model->vertex_count, sizeof *held);
   Status status = held ? STATUS_OK : status_no_memory("the curvature of a body");
   for (int b = 0; b < model->body_count && !status; b++)
-    status = measure_roundness(model, b, held, &gives[b].roundness);
+    status = measure_roundness(model, b, held, &gives[b].roundness),
+    measure_box(model, &model->bodies[b], &gives[b]);
   memory_free(held);
   TRY(status);
   measure_shapes(model, gives);
@@ -208,8 +229,18 @@ static bool fits(double round, double hollow) {
   return round > 0 && hollow > 0 && fabs(round - hollow) <= SNUG * fmax(round, hollow);
 }
 
-static bool lies_in_hollow(const ContactRoundness *a, const ContactRoundness *b) {
-  return fits(a->round, b->hollow) || fits(b->round, a->hollow);
+// Whether the boxes share half of the lesser one in every direction: two tubes that cross do not.
+static bool share_room(const Give *a, const Give *b) {
+  for (int c = 0; c < 3; c++) {
+    double shared = fmin(a->high[c], b->high[c]) - fmax(a->low[c], b->low[c]);
+    if (!(shared >= 0.5 * fmin(a->high[c] - a->low[c], b->high[c] - b->low[c]))) return false;
+  }
+  return true;
+}
+
+static bool lies_in_hollow(const Give *a, const Give *b) {
+  return (fits(a->roundness.round, b->roundness.hollow) || fits(b->roundness.round, a->roundness.hollow)) &&
+         share_room(a, b);
 }
 
 // What is driven may press others by those between.
@@ -221,11 +252,12 @@ static double farthest_travel(const FemModel *model) {
   return farthest;
 }
 
-static double radius_between(const FemModel *model, const Give *gives, int a, int b, double curvature) {
+static double radius_between(const FemModel *model, const Give *gives, const Course *course, int a, int b,
+                             double curvature) {
   double force = fmax(fem_patch_load(model, a), fem_patch_load(model, b));
   double give = gives[a].give + gives[b].give;
   if (!(give > 0)) return 0;
-  return fem_patch_radius(curvature, 1 / give, farthest_travel(model), force, fem_blow_hardest(model));
+  return fem_patch_radius(curvature, 1 / give, course->travel, force, course->blow);
 }
 
 // By how much less than LAYER_GIVE the interface yields where more elements resolve the patch.
@@ -233,13 +265,14 @@ static double resolved_by(double radius, double edge) {
   return edge > 0 ? fmax(1, radius / (RESOLVED * edge)) : 1;
 }
 
-static Meeting meeting_of(const FemModel *model, const Give *gives, int a, int b) {
+// Only what bulges meets first: a hole in a face that nothing fills does not curve it.
+static Meeting meeting_of(const FemModel *model, const Give *gives, const Course *course, int a, int b) {
   const Give *one = &gives[a], *other = &gives[b];
-  Meeting meeting = {.curvature = curvature_of(one) + curvature_of(other),
-                     .is_hollow = lies_in_hollow(&one->roundness, &other->roundness)};
+  Meeting meeting = {.curvature = one->roundness.round + other->roundness.round,
+                     .is_hollow = lies_in_hollow(one, other)};
   meeting.is_curved = a != b && meeting.curvature > 0;
   if (!meeting.is_curved) return meeting;
-  meeting.radius = radius_between(model, gives, a, b, meeting.curvature);
+  meeting.radius = radius_between(model, gives, course, a, b, meeting.curvature);
   if (!meeting.is_hollow && meeting.radius * meeting.curvature > WIDE) return (Meeting){.is_curved = false};
   if (!meeting.is_hollow && !(meeting.radius > 0)) return meeting; // 2 % hold, whatever the elements are
   double edge = fmax(one->roundness.edge, other->roundness.edge);
@@ -252,14 +285,14 @@ static int terms_of(const FemModel *model, int b) {
   return b < model->body_count ? 2 : 1;
 }
 
-static void choose_for_field(const FemModel *model, const Give *gives, FemCompliance *choice) {
-  double blow = fem_blow_hardest(model);
+static void choose_for_field(const FemModel *model, const Give *gives, const Course *course,
+                             FemCompliance *choice) {
   int parties = choice->party_count;
   for (int a = 0; a < model->body_count; a++)
     for (int b = 0; b < parties; b++) {
-      Meeting meeting = meeting_of(model, gives, a, b);
+      Meeting meeting = meeting_of(model, gives, course, a, b);
       choice->stiffness[a * parties + b] =
-          stiffness_between(&gives[a], &gives[b], a == b ? 0 : blow, terms_of(model, b), &meeting,
+          stiffness_between(&gives[a], &gives[b], a == b ? 0 : course->blow, terms_of(model, b), &meeting,
                             &choice->bounds[a * parties + b]);
     }
 }
@@ -267,8 +300,9 @@ static void choose_for_field(const FemModel *model, const Give *gives, FemCompli
 // ---- How often edges are halved.
 
 // The least level at which the depth is as large as SAGITTAS of the facets of both, h²/(8 R · 4^level).
-static int level_between(const FemModel *model, const Give *gives, int a, int b, double stiffness) {
-  const Meeting meeting = meeting_of(model, gives, a, b);
+static int level_between(const FemModel *model, const Give *gives, const Course *course, int a, int b,
+                         double stiffness) {
+  const Meeting meeting = meeting_of(model, gives, course, a, b);
   double sagitta = 0, give = gives[a].give + gives[b].give;
   if (!meeting.is_curved || !(give > 0)) return 0;
   if (meeting.is_hollow) return CONTACT_SMOOTH_MOST_LEVEL;
@@ -288,12 +322,13 @@ static void raise_level(FemCompliance *choice, int body, int level) {
   if (level > choice->levels[body]) choice->levels[body] = level;
 }
 
-static void choose_levels(const FemModel *model, const Give *gives, FemCompliance *choice) {
+static void choose_levels(const FemModel *model, const Give *gives, const Course *course,
+                          FemCompliance *choice) {
   int wanted = model->scene->contact.smooth, parties = choice->party_count;
   for (int a = 0; a < model->body_count; a++) {
     if (wanted >= 0) choice->levels[a] = wanted;
     for (int b = a + 1; b < parties && wanted < 0; b++) {
-      int level = level_between(model, gives, a, b, choice->stiffness[a * parties + b]);
+      int level = level_between(model, gives, course, a, b, choice->stiffness[a * parties + b]);
       raise_level(choice, a, level);
       if (b < model->body_count) raise_level(choice, b, level);
     }
@@ -370,10 +405,14 @@ static Status choose(const FemModel *model, Give *gives, FemCompliance *choice) 
   bool is_field = contact->potential == CONTACT_POTENTIAL_FIELD;
   size_t count = (size_t)model->body_count * (size_t)choice->party_count;
   for (size_t k = 0; k < count; k++) choice->stiffness[k] = fem_model_contact_stiffness(model);
-  if (is_field) TRY(measure_bodies(model, gives));
-  if (is_field && !(contact->stiffness > 0)) choose_for_field(model, gives, choice);
+  Course course = {0};
+  if (is_field) {
+    TRY(measure_bodies(model, gives));
+    course = (Course){.blow = fem_blow_hardest(model), .travel = farthest_travel(model)};
+  }
+  if (is_field && !(contact->stiffness > 0)) choose_for_field(model, gives, &course, choice);
   TRY(apply_pairs(model, choice));
-  if (is_field) choose_levels(model, gives, choice);
+  if (is_field) choose_levels(model, gives, &course, choice);
   return STATUS_OK;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How stiff contact is: κ of each two that can meet, as the scene says or as chosen from the bodies.
 //
-// For the potential `field` the choice does not depend on the mesh. Under a pressure p the interface of two
+// For the potential `field`: under a pressure p the interface of two
 // bodies yields by p/(2c) and the bodies by about p L (1/E_A' + 1/E_B'), L the height of the smaller one: a
 // patch of contact is no larger than that, and material farther away deforms little. So
 //
@@ -24,23 +24,25 @@
 // the edge of a cube stores the whole of W, p² L³/(2 E) then (twice that of two equal cubes), within d = L/4
 // (L/3).
 //
+// Between flat faces the choice does not depend on the mesh.
+//
 // Where a surface curves, facets touch at corners if the overlap is not as deep as their sagittas, and the
-// elements do not resolve what varies within an edge. So the interface yields at least as much as .27 of the
-// layer of elements at the two surfaces, if one of them curves:
+// elements do not resolve what varies within an edge. So the interface yields at least as much as λ of the
+// layer of elements at the two surfaces:
 //
-//   c ≤ 1 / (.54 (h_A/E_A' + h_B/E_B')),     against a shape without elements twice that,
+//   c ≤ 1 / (2 λ (h_A/E_A' + h_B/E_B')),     against a shape without elements twice that,
 //
-// h the edge there (contact/surface/roundness.h), unless an impact needs more, or nothing tells how wide the
-// patch becomes: then it may be less than an element, and 2 % hold. By Hertz the overlap of a
-// patch of the radius N h is then as deep as .7 N sagittas of both. That of a patch by
-// fem/model/patch.h, or of what c
-// the scene says, decides about contact.smooth: the least level at which it is as deep as 1.1 sagittas of
-// what is left, h²/(8 R · 4^level). Where one lies in the hollow of another, radii a quarter apart at most,
-// pressures are low beside E h/R: there it is 2. Quadratic elements have their own curved edges.
+// h the edge there (contact/surface/roundness.h). λ is .34, less in proportion where more than 2.2 edges
+// resolve the radius a of the patch (patch.h), and .25 where one lies in the hollow of another: radii a
+// quarter apart at most, boxes that share half of the lesser one. The bound is not used where an impact needs
+// more, where nothing tells a, and where a is more than .6 of the radius of curvature.
 //
-// The rule of 2 % assumes contact over the whole width. Where the contact is far smaller than both bodies, of
-// radius a, they yield by about p a (1/E_A + 1/E_B) only, and the interface by L/a times 2 % of that. For
-// such contacts set contact.stiffness to about L/a times the chosen value.
+// A patch of the radius a yields by π/2 a (1/E_A' + 1/E_B') for each Pa in its middle. Where that is less
+// than what whole bodies yield, the 2 % are those of the patch.
+//
+// contact.smooth is the least level at which the overlap in the middle of the patch is as deep as 2.5
+// sagittas of what is left, h²/(8 R · 4^level); 2 in a hollow, where pressures are low beside E h/R; 1 where
+// nothing tells a. Quadratic elements have their own curved edges.
 #ifndef TETLAP_FEM_MODEL_COMPLIANCE_H
 #define TETLAP_FEM_MODEL_COMPLIANCE_H
 
@@ -74,7 +76,7 @@ int fem_compliance_party(const FemModel *model, const char *name);
 const char *fem_compliance_party_name(const FemModel *model, int party);
 
 // μ between two parties: the scene's, or that of the last of `contact.pairs` with these two. Names must have
-// been checked (fem_compliance_stiffness).
+// been checked (fem_compliance_choose).
 double fem_compliance_friction(const FemModel *model, int a, int b);
 
 // The least and largest κ of what can meet.

@@ -36,13 +36,16 @@ double fem_patch_travel(const FemModel *model, int party) {
   double farthest = 0;
   const FemObstacleDef *shape = shape_of(model, party);
   if (shape) return travel_of(model, &shape->motion, shape->point);
+  const FemModelBody *body = &model->bodies[party];
   for (int d = 0; d < model->driver_count; d++) {
     const FemModelDriver *driver = &model->drivers[d];
-    if (driver->dof_count == 0) continue;
-    int vertex = driver->dofs[0] / 3;
-    const FemModelBody *body = &model->bodies[party];
-    if (vertex < body->vertex_begin || vertex >= body->vertex_end) continue;
-    farthest = fmax(farthest, travel_of(model, driver->def, model->rest + 3 * (size_t)vertex));
+    double least = INFINITY;
+    for (int i = 0; i < driver->dof_count; i++) {
+      int vertex = driver->dofs[i] / 3;
+      if (vertex < body->vertex_begin || vertex >= body->vertex_end) break;
+      least = fmin(least, travel_of(model, driver->def, model->rest + 3 * (size_t)vertex));
+    }
+    if (least < INFINITY) farthest = fmax(farthest, least);
   }
   return farthest;
 }

@@ -13,7 +13,9 @@
 
 #include "fem/model/model.h"
 
-// How far the party (bodies, then obstacles without elements) is moved by what drives it, at most [m].
+// How far the party (bodies, then obstacles without elements) is moved by what drives it, at most [m]; of
+// driven vertices the one that moves least counts, so a turn about an axis moves nothing towards another
+// body.
 double fem_patch_travel(const FemModel *model, int party);
 // The largest resultant of the loads on a body (a torque has none), its weight included in a static scene; 0:
 // an obstacle [N].

@@ -184,7 +184,7 @@ static void keep_work(FemStatics *statics, double time) {
   const FemModel *model = system->model;
   const double *positions = statics->equilibrium.state->positions;
   double more = fem_gravity_share(model, time) - fem_gravity_share(model, statics->kept_time);
-  double longest = 0;
+  double longest = 0, held = 0;
   statics->work_begin = fem_gravity_ramp_work(model, more, statics->kept_position);
   statics->work_end = fem_gravity_ramp_work(model, more, positions);
   for (int d = 0; d < model->driver_count; d++)
@@ -197,9 +197,9 @@ static void keep_work(FemStatics *statics, double time) {
     }
   for (int i = 0; i < system->numbering.count; i++) {
     int dof = system->numbering.dof_of_unknown[i];
-    statics->work_begin -= statics->kept_force[dof] * (positions[dof] - statics->kept_position[dof]);
+    held -= statics->kept_force[dof] * (positions[dof] - statics->kept_position[dof]);
   }
-  statics->driven_work += 0.5 * (statics->work_begin + statics->work_end);
+  statics->driven_work += 0.5 * (statics->work_begin + statics->work_end + held);
   statics->work_left = statics->residual * sqrt(system->numbering.count) * longest;
   statics->kept_time = time;
   size_t bytes = 3 * (size_t)model->vertex_count * sizeof(double);

@@ -60,7 +60,7 @@ static const SceneSection select_radius = {.help = "vertices by their distance f
 static const SceneKey select_normal_keys[] = {
     {"direction", SCENE_DIRECTION, AT(FemSelectDef, normal), .required = "[0, 0, 1]",
      .help = "of outward normals"},
-    {"degrees", SCENE_NUMBER, AT(FemSelectDef, degrees), .unit = "°", .range = "[0, 180]", .fallback = "1",
+    {"degrees", SCENE_NUMBER, AT(FemSelectDef, degrees), .unit = "°", .range = "(0, 180]", .fallback = "1",
      .help = "largest angle of a normal with it"},
     {0},
 };

@@ -20,6 +20,7 @@ START_TEST(bodies_of_flat_faces_are_pressed_by_their_heights) {
   FemCompliance choice;
   choose(&run, "../../examples/05_press", NULL, &choice);
   for (int a = 0; a < run.model.body_count; a++) ck_assert_int_eq(choice.levels[a], 0);
+  ck_assert_int_ge(run.model.body_count, 2);
   for (int k = 0; k < run.model.body_count * choice.party_count; k++)
     ck_assert_int_eq(choice.bounds[k], FEM_COMPLIANCE_BODIES);
   forget(&run, &choice);
@@ -77,6 +78,41 @@ START_TEST(a_torque_tells_no_patch) {
 }
 END_TEST
 
+// A shaft beside its hole, not in it: nothing lies in a hollow.
+START_TEST(a_shaft_beside_a_hole_of_its_radius_lies_in_no_hollow) {
+  SceneRun run;
+  FemCompliance choice;
+  choose(&run, "../../examples/validation/shaft",
+         (const char *const[]){"bodies[1].place={translate: [5, 0, 0]}", NULL}, &choice);
+  ck_assert_int_lt(choice.levels[0], 2);
+  forget(&run, &choice);
+}
+END_TEST
+
+// A thousand times as large c is a thousandth, in Pa/m, and nothing else changes; nor does it in a scene that
+// is turned.
+START_TEST(the_choice_knows_no_lengths_and_no_directions) {
+  static const char *const LARGE[] = {"bodies.lower.place={scale: 1000}", "bodies.upper.place.scale=1000",
+                                      "bodies.upper.driven[0].formula.z=-6*t", NULL};
+  static const char *const TURNED[] = {"bodies.lower.place={rotate: {axis: [1, 0, 0], degrees: 180}}",
+                                       "bodies.upper.place.rotate={axis: [0, 0, 1], degrees: 90}",
+                                       "bodies.upper.driven[0].formula.z=0.006*t", NULL};
+  const char *const *const changes[] = {NULL, LARGE, TURNED};
+  const double share[] = {1, 1e-3, 1};
+  SceneRun run;
+  FemCompliance choice;
+  double c = 0;
+  for (int k = 0; k < 3; k++) {
+    choose(&run, "../../examples/validation/crossed", changes[k], &choice);
+    if (k == 0) c = choice.stiffness[1];
+    ck_assert_near(choice.stiffness[1], share[k] * c, 1e-6 * share[k] * c);
+    ck_assert_int_eq(choice.bounds[1], FEM_COMPLIANCE_ELEMENTS);
+    ck_assert_int_eq(choice.levels[0], 1);
+    forget(&run, &choice);
+  }
+}
+END_TEST
+
 START_TEST(the_scene_has_the_last_word) {
   SceneRun run;
   FemCompliance choice;
@@ -96,6 +132,8 @@ int main(void) {
   tcase_add_test(tests, fewer_elements_in_a_patch_are_halved_more);
   tcase_add_test(tests, a_patch_that_nothing_tells_leaves_the_rule_of_the_bodies);
   tcase_add_test(tests, a_torque_tells_no_patch);
+  tcase_add_test(tests, a_shaft_beside_a_hole_of_its_radius_lies_in_no_hollow);
+  tcase_add_test(tests, the_choice_knows_no_lengths_and_no_directions);
   tcase_add_test(tests, the_scene_has_the_last_word);
   return suite_run("compliance", tests, 60);
 }

@@ -58,6 +58,7 @@ START_TEST(a_linear_body_is_in_equilibrium_after_one_solve) {
   ck_assert(audit->work > 0);
   ck_assert_near(audit->total, audit->first, 1e-6 * audit->scale);
   ck_assert_near(audit->driven_work, -audit->work, 1e-6 * audit->scale);
+  ck_assert_double_lt(audit->open, 1e-6 * audit->scale); // the work is known
   free(u);
   scene_close(&run);
 }
