@@ -44,10 +44,13 @@ static Status count_tasks(Crew *crew) {
   return STATUS_OK;
 }
 
-// What it has printed is its result, if it succeeded.
+// What it has printed, or written meanwhile, is its result. With exit code 70 a case was not met, which is
+// one.
 static void conclude(Crew *crew, int slot, int exit_code) {
   const AppVerdictTask *task = &crew->tasks[slot];
+  const bool has_ended = exit_code == 0 || exit_code == status_exit_code(STATUS_SOLVER);
   if (task->is_printed && exit_code == 0) rename(task->log, task->output);
+  if (task->part[0] && has_ended) rename(task->part, task->output);
   crew->children[slot] = 0;
   crew->ended++;
   const bool is_there = file_exists(task->output);

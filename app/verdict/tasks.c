@@ -86,7 +86,8 @@ Status app_verdict_task(const AppVerdictPlan *plan, int index, AppVerdictTask *t
     TRY(fill_scene(plan, task, &words, &app_verdict_scenes[index - 5]));
   } else if (index == 0) {
     TRY(place(plan, task, "contract.json"));
-    add(&words, "stress", "--pairs", "--overlap", plan->source, "--json", task->output, NULL);
+    TRY(write_text(task->part, "%s.part", task->output));
+    add(&words, "stress", "--pairs", "--overlap", plan->source, "--json", task->part, NULL);
     if (plan->is_quick) add(&words, "--quick", NULL);
     return STATUS_OK; // it has no --threads
   } else if (index == 4) {

@@ -44,6 +44,7 @@ typedef struct AppVerdictTask {
   char output[PATH_MAX]; // there when it is done
   char log[PATH_MAX];    // what the process prints; becomes `output` where `is_printed`
   bool is_printed;
+  char part[PATH_MAX]; // of a file that grows: what becomes `output` when the process has ended; "": nothing
   char texts[6][PATH_MAX]; // words that are made
   const char *words[APP_VERDICT_WORDS];
 } AppVerdictTask;

@@ -52,14 +52,14 @@ static int compare(const void *left, const void *right) {
   return (a > b) - (a < b);
 }
 
-// The value below which this share of the area is; 0 of none.
-static double quantile(Weighed *values, int count, double share) {
+// The value below which one in `parts` of the area is; 0 of none.
+static double quantile(Weighed *values, int count, int parts) {
   double area = 0, below = 0;
   if (count == 0) return 0;
   qsort(values, (size_t)count, sizeof *values, compare);
   for (int k = 0; k < count; k++) area += values[k].area;
   for (int k = 0; k < count; k++)
-    if ((below += values[k].area) >= share * area) return values[k].value;
+    if ((below += values[k].area) * parts >= area) return values[k].value;
   return values[count - 1].value;
 }
 
@@ -82,7 +82,7 @@ static double edge_of(const Facets *facets, const ContactSmooth *smooth, const b
   for (int f = 0; f < smooth->skin.face_count; f++)
     if (!is_held(smooth, held, f) && (is_flat || curves(smooth, f)))
       facets->edges[count++] = (Weighed){sqrt(2 * smooth->skin.faces[f].area), 1};
-  return quantile(facets->edges, count, 0.1);
+  return quantile(facets->edges, count, 10);
 }
 
 static Status look_at(const ContactSmooth *smooth, const bool *held, Facets *facets,
@@ -95,8 +95,8 @@ static Status look_at(const ContactSmooth *smooth, const bool *held, Facets *fac
   for (int f = 0; f < smooth->skin.face_count; f++)
     if (!is_held(smooth, held, f)) add_facet(smooth, f, facets);
   double least = facets->area / 20;
-  if (facets->round_area > least) roundness->round = quantile(facets->round, facets->round_count, 0.5);
-  if (facets->hollow_area > least) roundness->hollow = quantile(facets->hollow, facets->hollow_count, 0.5);
+  if (facets->round_area > least) roundness->round = quantile(facets->round, facets->round_count, 2);
+  if (facets->hollow_area > least) roundness->hollow = quantile(facets->hollow, facets->hollow_count, 2);
   roundness->edge = edge_of(facets, smooth, held, roundness->round == 0 && roundness->hollow == 0);
   return STATUS_OK;
 }
