@@ -17,15 +17,13 @@
 #include "base/text.h"
 
 static const AppCommand *const commands[] = {
-    &app_command_run,     &app_command_resume,  &app_command_compare,
-    &app_command_sweep,   &app_command_report,  &app_command_view,
-    &app_command_render,  &app_command_plot,    &app_command_check,
-    &app_command_mesh,    &app_command_schema,  &app_command_effects,
-    &app_command_devices, &app_bench_bench,     &app_command_overlap,
-    &app_command_datagen, &app_command_dataset, &app_command_train,
-    &app_command_eval,    &app_command_weights, &app_command_poses,
-    &app_command_stress,  &app_command_verdict, &app_command_completion,
-    &app_command_version, &app_command_help,    NULL,
+    &app_command_run,        &app_command_resume,  &app_command_compare, &app_command_sweep,
+    &app_command_gradient,   &app_command_report,  &app_command_view,    &app_command_render,
+    &app_command_plot,       &app_command_check,   &app_command_mesh,    &app_command_schema,
+    &app_command_effects,    &app_command_devices, &app_bench_bench,     &app_command_overlap,
+    &app_command_datagen,    &app_command_dataset, &app_command_train,   &app_command_eval,
+    &app_command_weights,    &app_command_poses,   &app_command_stress,  &app_command_verdict,
+    &app_command_completion, &app_command_version, &app_command_help,    NULL,
 };
 
 const AppCommand app_program_root = {
@@ -86,10 +84,10 @@ int app_program_run(const AppCommand *root, int argument_count, char **arguments
   return flush_output(app_cli_command_run(root, argument_count, arguments));
 }
 
-// Threads that wait shall sleep soon: on a machine that others use too, spinning ones held a matrix product of 20
-// k vertices for 17 ms instead of 2.4 ms. Sleeping at once costs a tenth of a run on two cores, so they spin some
-// microseconds. libgomp reads this before main, so the program starts itself once more; only for commands that
-// have threads, since a start takes a hundredth of a second.
+// Threads that wait shall sleep soon: on a machine that others use too, spinning ones held a matrix product
+// of 20 k vertices for 17 ms instead of 2.4 ms. Sleeping at once costs a tenth of a run on two cores, so they
+// spin some microseconds. libgomp reads this before main, so the program starts itself once more; only for
+// commands that have threads, since a start takes a hundredth of a second.
 static void let_threads_sleep(char **arguments) {
   bool is_set = getenv("OMP_WAIT_POLICY") || setenv("OMP_WAIT_POLICY", "passive", 1) != 0;
   if (is_set || setenv("GOMP_SPINCOUNT", "5000", 0) != 0) return;

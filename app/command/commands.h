@@ -40,6 +40,7 @@ extern const AppCommand app_command_verdict;
 // app/command/scene
 extern const AppCommand app_command_check;
 extern const AppCommand app_command_compare;
+extern const AppCommand app_command_gradient;
 extern const AppCommand app_command_mesh; // exit code 65: the mesh cannot be used
 extern const AppCommand app_command_resume;
 extern const AppCommand app_command_run;
