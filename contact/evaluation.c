@@ -304,7 +304,7 @@ static void overlap_shapes(ContactEvaluation *evaluation, const ContactLayout *l
     const double *tet = evaluation->coordinates + 24 * (size_t)k;
     if (!contact_layout_has_field(layout)) {
       double *gradient = evaluation->gradients + 24 * (size_t)k;
-      contact_shape_overlap(shape, time, tet, &evaluation->volumes[k], gradient, NULL);
+      contact_shape_overlap(shape, time, tet, &evaluation->volumes[k], gradient);
       memset(gradient + 12, 0, 12 * sizeof(double));
       continue;
     }

@@ -230,7 +230,7 @@ static double longest_edge(const double tet[12]) {
 typedef struct Question {
   const double *centre;
   double radius;
-  double rest_volume; // 0: of V
+  double rest_volume;
 } Question;
 
 // U = s ∫ φ with s = V⁰/|V_tet|, and |V_tet| grows by |V_tet| ∇λ_v.
@@ -250,14 +250,6 @@ static double press_with_gradient(const Question *question, const double tet[12]
   return (double)(s * sums.depth);
 }
 
-static void gradient_of(const Question *question, const double tet[12], double gradient[12]) {
-  double volume;
-  if (question->rest_volume > 0)
-    press_with_gradient(question, tet, &volume, gradient);
-  else
-    overlap_with_gradient(tet, question->centre, question->radius, gradient);
-}
-
 // What differences may leave of a negative eigenvalue, as a share of the largest diagonal entry. In a flat
 // cell rounding leaves more, for the gradient's own is divided by the step and grows with rest volume over
 // volume.
@@ -265,13 +257,13 @@ static const double ROUGH = 1e-4;
 
 static void differentiate(const Question *question, const double tet[12], double hessian[144]) {
   static const double STEP = 1e-5; // of the longest edge
-  double step = STEP * longest_edge(tet), moved[12], high[12], low[12];
+  double step = STEP * longest_edge(tet), moved[12], high[12], low[12], volume;
   for (int c = 0; c < 12; c++) {
     memcpy(moved, tet, sizeof moved);
     moved[c] = tet[c] + step;
-    gradient_of(question, moved, high);
+    press_with_gradient(question, moved, &volume, high);
     moved[c] = tet[c] - step;
-    gradient_of(question, moved, low);
+    press_with_gradient(question, moved, &volume, low);
     for (int r = 0; r < 12; r++) hessian[12 * r + c] = (high[r] - low[r]) / (2 * step);
   }
   for (int r = 0; r < 12; r++)
@@ -280,14 +272,12 @@ static void differentiate(const Question *question, const double tet[12], double
 }
 
 void contact_ball_overlap(const double tet[12], const double centre[3], double radius, double *volume,
-                          double gradient[12], double hessian[144]) {
+                          double gradient[12]) {
   double own[12];
   *volume = 0;
   if (gradient) memset(gradient, 0, 12 * sizeof *gradient);
-  if (hessian) memset(hessian, 0, 144 * sizeof *hessian);
   if (contact_ball_separation(tet, centre, radius) >= 0) return;
   *volume = overlap_with_gradient(tet, centre, radius, gradient ? gradient : own);
-  if (hessian) differentiate(&(Question){centre, radius, 0}, tet, hessian);
 }
 
 void contact_ball_press(const double tet[12], const double centre[3], double radius, double rest_volume,

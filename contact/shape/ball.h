@@ -31,16 +31,16 @@
 // middle if the centre lies inside. A continuous function of the corners.
 void contact_ball_nearest(const double tet[12], const double centre[3], double weights[4]);
 
-// `tet` (4, 3), of either orientation. `gradient` (4, 3) and `hessian` (12, 12) may be NULL; all outputs are
-// written. The Hessian is made of central differences of the gradient, symmetrised: right to about 1e-8 of
-// its largest entry, except where the sphere touches an edge or a vertex.
+// `tet` (4, 3), of either orientation. `gradient` (4, 3) may be NULL; all outputs are written.
 void contact_ball_overlap(const double tet[12], const double centre[3], double radius, double *volume,
-                          double gradient[12], double hessian[144]);
+                          double gradient[12]);
 
 // The overlap V [m³], and of the potential `field` (contact/pressure/field.h) with c = 1 Pa/m the energy of a
-// tetrahedron of that rest volume [m⁴], its gradient [m³] and, where not NULL, the Hessian [m²], of
-// differences as above. Its negative part is −s/R ∫ |δu|² ≥ −s/R V Σ |δu_v|²; not full: as much is added.
-// Negative eigenvalues by rounding, of flat tetrahedra, are removed (contact/shape/definite.h).
+// tetrahedron of that rest volume [m⁴], its gradient [m³] and, where not NULL, the Hessian [m²]. That
+// is made of central differences of the gradient, symmetrised: right to about 1e-8 of its largest entry,
+// except where the sphere touches an edge or a vertex. Its negative part is −s/R ∫ |δu|² ≥ −s/R V Σ |δu_v|²;
+// not full: as much is added. Negative eigenvalues by rounding, of flat tetrahedra, are removed
+// (contact/shape/definite.h).
 void contact_ball_press(const double tet[12], const double centre[3], double radius, double rest_volume,
                         double *volume, double *energy, double gradient[12], double hessian[144],
                         bool is_full);

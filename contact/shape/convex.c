@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/tet.h"
-#include "overlap/clip/clip.h"
 
 // ---- The solids.
 
@@ -59,12 +58,11 @@ void contact_convex_make_prism(ContactConvex *convex, double radius, double half
 // ---- Polygons and clipping.
 
 // Each plane adds one corner to a convex polygon; rounding, where the polygon is thinner than that, more.
-enum { MOST_CORNERS = CONTACT_CONVEX_PLANES + 16, OWN = -1 };
+enum { MOST_CORNERS = CONTACT_CONVEX_PLANES + 16 };
 
 typedef struct Corner {
   Vec3 x;
   double beta[4]; // barycentric coordinates in the tetrahedron
-  int plane;      // that the edge from here to the next corner lies on; OWN: an edge of the tetrahedron
 } Corner;
 
 typedef struct Polygon {
@@ -72,8 +70,8 @@ typedef struct Polygon {
   Corner corners[MOST_CORNERS];
 } Polygon;
 
-static Corner between(const Corner *p, const Corner *q, double share, int plane) {
-  Corner corner = {.x = vec3_add(vec3_scale(1 - share, p->x), vec3_scale(share, q->x)), .plane = plane};
+static Corner between(const Corner *p, const Corner *q, double share) {
+  Corner corner = {.x = vec3_add(vec3_scale(1 - share, p->x), vec3_scale(share, q->x))};
   for (int v = 0; v < 4; v++) corner.beta[v] = (1 - share) * p->beta[v] + share * q->beta[v];
   return corner;
 }
@@ -91,7 +89,7 @@ static void cut(Polygon *polygon, const ContactConvex *convex, int k) {
     double from = vec3_dot(convex->normals[k], p->x) - convex->offsets[k];
     double to = vec3_dot(convex->normals[k], q->x) - convex->offsets[k];
     if (!(from > 0)) push(&kept, *p);
-    if (!(from > 0) != !(to > 0)) push(&kept, between(p, q, from / (from - to), from > 0 ? p->plane : k));
+    if (!(from > 0) != !(to > 0)) push(&kept, between(p, q, from / (from - to)));
   }
   polygon->count = kept.count;
   memcpy(polygon->corners, kept.corners, (size_t)kept.count * sizeof(Corner));
@@ -119,7 +117,7 @@ static bool find_cutting(const ContactConvex *convex, const Vec3 x[4], Cutting *
 }
 
 static Corner corner_of(const Vec3 x[4], int vertex) {
-  Corner corner = {.x = x[vertex], .plane = OWN};
+  Corner corner = {.x = x[vertex]};
   corner.beta[vertex] = 1;
   return corner;
 }
@@ -148,7 +146,7 @@ static void make_section(Polygon *polygon, const ContactConvex *convex, const Cu
     for (int j = 0; j < above_count; j++) {
       int p = below[i], q = above[below_count == 2 && i == 1 ? 1 - j : j]; // around a quadrilateral
       Corner from = corner_of(x, p), to = corner_of(x, q);
-      push(polygon, between(&from, &to, height[p] / (height[p] - height[q]), k));
+      push(polygon, between(&from, &to, height[p] / (height[p] - height[q])));
     }
   for (int i = 0; i < cutting->count && polygon->count > 0; i++)
     if (i != own) cut(polygon, convex, cutting->planes[i]);
@@ -181,52 +179,6 @@ static void add_moments(const Polygon *polygon, Vec3 normal, double moment[4]) {
   }
 }
 
-// ---- ∂²V/∂x².
-
-// H_av += factor · share_a · (δ ↦ δ × d) of a face, d the edge opposite to its corner v.
-static void add_turning(const Vec3 x[4], const int face[3], const double share[4], double hessian[144]) {
-  for (int v = 0; v < 3; v++) {
-    Vec3 d = vec3_scale(0.5, vec3_sub(x[face[(v + 1) % 3]], x[face[(v + 2) % 3]]));
-    const double turn[9] = {0, d.z, -d.y, -d.z, 0, d.x, d.y, -d.x, 0};
-    for (int a = 0; a < 3; a++)
-      for (int e = 0; e < 9; e++)
-        hessian[12 * (3 * face[a] + e / 3) + 3 * face[v] + e % 3] += share[face[a]] * turn[e];
-  }
-}
-
-// −∫ β_a β_v ds n_f n_kᵀ / sin θ of an edge of P_f on plane k, by Simpson's rule; see clip/hessian.c for why
-// the antisymmetric part, −½ [s]×, needs no division.
-static void add_segment(const Corner *p, const Corner *q, Vec3 face, Vec3 plane, double hessian[144]) {
-  Vec3 step = vec3_sub(q->x, p->x);
-  double sine = fmax(vec3_length(vec3_cross(face, plane)), OVERLAP_CLIP_LEAST_SINE);
-  double half = vec3_length(step) / (2 * sine);
-  const double f[3] = {face.x, face.y, face.z}, g[3] = {plane.x, plane.y, plane.z};
-  const double turn[9] = {0, step.z, -step.y, -step.z, 0, step.x, step.y, -step.x, 0};
-  double coupling[9];
-  for (int e = 0; e < 9; e++) coupling[e] = half * (f[e / 3] * g[e % 3] + g[e / 3] * f[e % 3]) + turn[e] / 2;
-  for (int a = 0; a < 4; a++)
-    for (int v = 0; v < 4; v++) {
-      double mean = (2 * (p->beta[a] * p->beta[v] + q->beta[a] * q->beta[v]) + p->beta[a] * q->beta[v] +
-                     q->beta[a] * p->beta[v]) /
-                    6;
-      for (int e = 0; e < 9; e++) hessian[12 * (3 * a + e / 3) + 3 * v + e % 3] -= mean * coupling[e];
-    }
-}
-
-static void add_segments(const Polygon *polygon, const ContactConvex *convex, Vec3 normal,
-                         double hessian[144]) {
-  for (int i = 0; i < polygon->count; i++) {
-    const Corner *p = &polygon->corners[i], *q = &polygon->corners[(i + 1) % polygon->count];
-    if (p->plane != OWN) add_segment(p, q, normal, convex->normals[p->plane], hessian);
-  }
-}
-
-static void symmetrise(double hessian[144]) {
-  for (int r = 0; r < 12; r++)
-    for (int c = 0; c < r; c++)
-      hessian[12 * r + c] = hessian[12 * c + r] = 0.5 * (hessian[12 * r + c] + hessian[12 * c + r]);
-}
-
 // ---- All of it.
 
 typedef struct Face {
@@ -245,21 +197,15 @@ static Face face_of(const Vec3 x[4], int f, bool is_mirrored) {
   return face;
 }
 
-// What a polygon on a face adds to the derivatives.
-static void add_derivatives(const ContactConvex *convex, const Polygon *polygon, const Vec3 x[4],
-                            const Face *face, double gradient[12], double hessian[144]) {
+// What a polygon on a face adds to the gradient.
+static void add_gradient(const Polygon *polygon, const Face *face, double gradient[12]) {
   double moment[4] = {0};
   add_moments(polygon, face->normal, moment);
-  for (int v = 0; v < 4 && gradient; v++)
-    vec3_accumulate(gradient + 3 * v, vec3_scale(moment[v], face->normal));
-  if (!hessian) return;
-  for (int v = 0; v < 4; v++) moment[v] /= face->area;
-  add_turning(x, face->corners, moment, hessian);
-  add_segments(polygon, convex, face->normal, hessian);
+  for (int v = 0; v < 4; v++) vec3_accumulate(gradient + 3 * v, vec3_scale(moment[v], face->normal));
 }
 
 void contact_convex_overlap(const ContactConvex *convex, const double tet[12], double *volume,
-                            double gradient[12], double hessian[144]) {
+                            double gradient[12]) {
   Vec3 x[4], o = {0, 0, 0};
   Cutting cutting;
   Polygon polygon;
@@ -267,7 +213,6 @@ void contact_convex_overlap(const ContactConvex *convex, const double tet[12], d
   double tripled = 0;
   *volume = 0;
   if (gradient) memset(gradient, 0, 12 * sizeof *gradient);
-  if (hessian) memset(hessian, 0, 144 * sizeof *hessian);
   for (int v = 0; v < 4; v++) x[v] = vec3_at(tet + 3 * v);
   if (!find_cutting(convex, x, &cutting)) return;
   bool is_mirrored = vec3_det4(x[0], x[1], x[2], x[3]) < 0;
@@ -278,7 +223,7 @@ void contact_convex_overlap(const ContactConvex *convex, const double tet[12], d
     if (polygon.count < 3) continue;
     if (!has_origin) o = polygon.corners[0].x, has_origin = true;
     tripled += pyramid(&polygon, face.normal, o, false);
-    if (gradient || hessian) add_derivatives(convex, &polygon, x, &face, gradient, hessian);
+    if (gradient) add_gradient(&polygon, &face, gradient);
   }
   for (int i = 0; i < cutting.count; i++) {
     make_section(&polygon, convex, &cutting, i, x);
@@ -287,7 +232,6 @@ void contact_convex_overlap(const ContactConvex *convex, const double tet[12], d
     tripled += pyramid(&polygon, convex->normals[cutting.planes[i]], o, true);
   }
   *volume = fmax(tripled / 3, 0);
-  if (hessian) symmetrise(hessian);
 }
 
 // ---- The depth below the nearest plane.

@@ -9,10 +9,9 @@
 //
 //   V = ⅓ Σ_f n_f·(p_f − o) |P_f| + ⅓ Σ_k n_k·(p_k − o) |Q_k|,
 //
-// ∂V/∂x_a = Σ_{f∋a} n_f ∫_{P_f} β_a dA, β the barycentric coordinates, and ∂²V/∂x² as derived in
-// overlap/clip/clip.h: a part by the rotation of the faces, and one by the edges of P_f that lie on a plane
-// k. Every polygon is clipped for itself, so no sign of a distance that is only rounding can tear the surface
-// open: an error ε of a distance moves a polygon's edge by ε.
+// ∂V/∂x_a = Σ_{f∋a} n_f ∫_{P_f} β_a dA, β the barycentric coordinates. Every polygon is clipped for itself,
+// so no sign of a distance that is only rounding can tear the surface open: an error ε of a distance moves a
+// polygon's edge by ε.
 #ifndef TETLAP_CONTACT_CONVEX_H
 #define TETLAP_CONTACT_CONVEX_H
 
@@ -45,11 +44,10 @@ void contact_convex_make_box(ContactConvex *convex, const double half_size[3]);
 void contact_convex_make_prism(ContactConvex *convex, double radius, double half_length, int faces);
 double contact_convex_prism_error(int faces);
 
-// V [m³] and, where not NULL, ∂V/∂x [m²] and ∂²V/∂x² [m] (12, 12; symmetric) of a tetrahedron of either
-// orientation. Where a face lies in a plane V has one-sided derivatives only; ∂²V/∂x² is bounded there as in
-// overlap/clip/clip.h.
+// V [m³] and, where not NULL, ∂V/∂x [m²] of a tetrahedron of either orientation. Where a face lies in a plane
+// V has one-sided derivatives only.
 void contact_convex_overlap(const ContactConvex *convex, const double tet[12], double *volume,
-                            double gradient[12], double hessian[144]);
+                            double gradient[12]);
 
 // Of the potential `field` (contact/pressure/field.h) with c = 1 Pa/m: V [m³], the energy of a tetrahedron of
 // that rest volume [m⁴], its gradient [m³] and, where not NULL, Hessian [m²]. The depth is that below the

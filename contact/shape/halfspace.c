@@ -77,39 +77,12 @@ static double first_derivative(Heights heights, double s_i) {
   return -cubic(t);
 }
 
-// ∂²F/∂s_i∂s_j, for i = j to be doubled: the divided difference of two B-splines over the whole span.
-static double second_derivative(Heights heights, double s_i, double s_j) {
-  double t[6];
-  memcpy(t, heights.s, sizeof heights.s);
-  insert(t, 4, s_i);
-  insert(t, 5, s_j);
-  double low = t[4] > 0 ? cubic(t) : 0, high = t[1] < 0 ? cubic(t + 1) : 0;
-  return -(high - low) / (t[5] - t[0]);
-}
-
 // ∂V/∂x_i of the whole tetrahedron, V = sign · det / 6.
 static void whole_gradient(const Vec3 edge[4], double sixth, Vec3 gradient[4]) {
   gradient[1] = vec3_scale(sixth, vec3_cross(edge[2], edge[3]));
   gradient[2] = vec3_scale(sixth, vec3_cross(edge[3], edge[1]));
   gradient[3] = vec3_scale(sixth, vec3_cross(edge[1], edge[2]));
   gradient[0] = vec3_scale(-1, vec3_add(gradient[1], vec3_add(gradient[2], gradient[3])));
-}
-
-// H_ij += scale · ∂²V/∂x_i∂x_j of the whole: det = a·(b × c), so ∂²det/∂a∂b δ = δ × c, and for any two
-// vertices the edge between the other two takes the place of c.
-static void add_whole_hessian(const double tet[12], double scale, double hessian[144]) {
-  static const int other[4][4][2] = {{{0, 0}, {2, 3}, {3, 1}, {1, 2}},
-                                     {{3, 2}, {0, 0}, {0, 3}, {2, 0}},
-                                     {{1, 3}, {3, 0}, {0, 0}, {0, 1}},
-                                     {{2, 1}, {0, 2}, {1, 0}, {0, 0}}};
-  for (int i = 0; i < 4; i++)
-    for (int j = 0; j < 4; j++) {
-      if (i == j) continue;
-      Vec3 d = vec3_sub(vec3_at(tet + 3 * other[i][j][1]), vec3_at(tet + 3 * other[i][j][0]));
-      d = vec3_scale(scale, d);
-      const double turn[9] = {0, d.z, -d.y, -d.z, 0, d.x, d.y, -d.x, 0}; // turn δ = δ × d
-      for (int e = 0; e < 9; e++) hessian[12 * (3 * i + e / 3) + 3 * j + e % 3] += turn[e];
-    }
 }
 
 // What V and its derivatives are made of.
@@ -151,31 +124,13 @@ static void write_gradient(const Cut *cut, double gradient[12]) {
   }
 }
 
-static void write_hessian(const Cut *cut, const double tet[12], double hessian[144]) {
-  memset(hessian, 0, 144 * sizeof *hessian);
-  add_whole_hessian(tet, cut->fraction * cut->sixth, hessian);
-  if (!is_cut(cut->heights)) return;
-  const double n[3] = {cut->normal.x, cut->normal.y, cut->normal.z};
-  for (int i = 0; i < 4; i++)
-    for (int j = 0; j < 4; j++) {
-      double bend = (1 + (i == j)) * second_derivative(cut->heights, cut->s[i], cut->s[j]);
-      Vec3 w_i = vec3_scale(cut->slope[j], cut->whole[i]), w_j = vec3_scale(cut->slope[i], cut->whole[j]);
-      const double row[3] = {w_i.x, w_i.y, w_i.z}, column[3] = {w_j.x, w_j.y, w_j.z};
-      for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++)
-          hessian[12 * (3 * i + r) + 3 * j + c] +=
-              row[r] * n[c] + n[r] * column[c] + cut->whole_volume * bend * n[r] * n[c];
-    }
-}
-
 void contact_halfspace_overlap(const double tet[12], const double point[3], const double normal[3],
-                               double *volume, double gradient[12], double hessian[144]) {
+                               double *volume, double gradient[12]) {
   Cut cut = cut_of(tet, vec3_at(point), vec3_at(normal));
   *volume = cut.fraction * cut.whole_volume;
-  if ((gradient || hessian) && is_cut(cut.heights))
-    for (int i = 0; i < 4; i++) cut.slope[i] = first_derivative(cut.heights, cut.s[i]);
-  if (gradient) write_gradient(&cut, gradient);
-  if (hessian) write_hessian(&cut, tet, hessian);
+  if (!gradient) return;
+  for (int i = 0; i < 4 && is_cut(cut.heights); i++) cut.slope[i] = first_derivative(cut.heights, cut.s[i]);
+  write_gradient(&cut, gradient);
 }
 
 // ---- The mean depth.

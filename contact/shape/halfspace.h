@@ -5,8 +5,7 @@
 // a truncated cubic (Hermite and Genocchi), its derivatives are B-splines with the heights as knots (Curry
 // and Schoenberg 1966: the section of a simplex is a B-spline):
 //
-//   F = −[s₀ s₁ s₂ s₃] g,   ∂F/∂s_i = −[s₀ s₁ s₂ s₃ s_i] g,   ∂²F/∂s_i∂s_j = −(1 + δ_ij) [s₀ s₁ s₂ s₃ s_i
-//   s_j] g,
+//   F = −[s₀ s₁ s₂ s₃] g,   ∂F/∂s_i = −[s₀ s₁ s₂ s₃ s_i] g,
 //
 // g(s) = max(−s, 0)³. They are evaluated by recurrences that add non-negative terms and divide by differences
 // that span the plane, so a vertex, edge or face near the plane costs no digits, at any scale.
@@ -22,12 +21,12 @@
 #define TETLAP_CONTACT_HALFSPACE_H
 
 // The solid is { x : normal·(x − point) ≤ 0 }; `normal` has unit length. Either orientation of the
-// tetrahedron. V [m³], and, where not NULL, dV/dx of the four vertices [m²] and d²V/dx² [m] (12 × 12,
-// symmetric). V is C² where one vertex crosses the plane; with an edge in the plane d²V/dx² stays bounded but
-// jumps, with a face in it dV/dx jumps. Scale-free: no tolerance. A tetrahedron that only touches the plane
-// from above has V = 0 and no derivatives.
+// tetrahedron. V [m³], and, where not NULL, dV/dx of the four vertices [m²]. V is C² where one vertex crosses
+// the plane; with an edge in the plane d²V/dx² stays bounded but jumps, with a face in it dV/dx jumps.
+// Scale-free: no tolerance. A tetrahedron that only touches the plane from above has V = 0 and no
+// derivatives.
 void contact_halfspace_overlap(const double tet[12], const double point[3], const double normal[3],
-                               double *volume, double gradient[12], double hessian[144]);
+                               double *volume, double gradient[12]);
 
 // The overlap V [m³], and of the potential `field` (contact/pressure/field.h) with c = 1 Pa/m the energy
 // `rest_volume` · D [m⁴] and, where not NULL, its derivatives [m³] and [m²] (12 × 12, positive semidefinite).

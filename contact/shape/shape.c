@@ -105,27 +105,26 @@ static void turn_hessian(const Pose *pose, double hessian[144]) {
 }
 
 static void overlap_convex(const ContactShape *shape, double time, const double tet[12], double *volume,
-                           double gradient[12], double hessian[144]) {
+                           double gradient[12]) {
   double own[12];
   Pose pose = pose_of(shape, time);
   to_own_frame(&pose, tet, own);
-  contact_convex_overlap(shape->convex, own, volume, gradient, hessian);
+  contact_convex_overlap(shape->convex, own, volume, gradient);
   if (*volume > 0 && gradient) turn_gradient(&pose, gradient);
-  if (*volume > 0 && hessian) turn_hessian(&pose, hessian);
 }
 
 void contact_shape_overlap(const ContactShape *shape, double time, const double tet[12], double *volume,
-                           double gradient[12], double hessian[144]) {
+                           double gradient[12]) {
   double point[3];
   if (shape->kind == CONTACT_SHAPE_CONVEX) {
-    overlap_convex(shape, time, tet, volume, gradient, hessian);
+    overlap_convex(shape, time, tet, volume, gradient);
     return;
   }
   vec3_store(point, contact_shape_point(shape, time));
   if (shape->kind == CONTACT_SHAPE_BALL)
-    contact_ball_overlap(tet, point, shape->radius, volume, gradient, hessian);
+    contact_ball_overlap(tet, point, shape->radius, volume, gradient);
   else
-    contact_halfspace_overlap(tet, point, shape->normal, volume, gradient, hessian);
+    contact_halfspace_overlap(tet, point, shape->normal, volume, gradient);
 }
 
 double contact_shape_middle(const ContactShape *shape) {

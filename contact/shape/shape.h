@@ -15,9 +15,9 @@ Vec3 contact_shape_velocity(const ContactShape *shape, double time, Vec3 x);
 // Where the shape's material that is at x at `time` was at the time `before` [m].
 Vec3 contact_shape_place_before(const ContactShape *shape, double time, double before, Vec3 x);
 
-// V [m³], ∂V/∂x [m²] and ∂²V/∂x² [m] of a tetrahedron (4, 3) in the shape; the last two may be NULL.
+// V [m³] and, where not NULL, ∂V/∂x [m²] of a tetrahedron (4, 3) in the shape.
 void contact_shape_overlap(const ContactShape *shape, double time, const double tet[12], double *volume,
-                           double gradient[12], double hessian[144]);
+                           double gradient[12]);
 // Of the potential `field` (contact/pressure/field.h) with c = 1 Pa/m: the overlap V [m³], the energy [m⁴] of
 // a tetrahedron (4, 3) of that rest volume, ∂/∂x of it [m³] and, where not NULL, ∂²/∂x² [m²]. The depth in a
 // ball is (R² − r²)/(2R), in a convex solid the least of those below its planes. Not full: ∂²/∂x² without

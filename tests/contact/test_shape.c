@@ -148,23 +148,28 @@ START_TEST(material_of_a_turning_ball_moves_with_it) {
 END_TEST
 
 // _i: 2, the box; 3, the cylinder.
-START_TEST(a_turned_solid_has_the_derivatives_of_its_volume) {
+START_TEST(a_turned_solid_has_the_derivatives_of_its_volume_and_energy) {
   ContactShape shape = _i == 2 ? box_below() : cylinder_below();
   double tet[12] = {1.5, 1.1, 0.2, 2.4, 1.3, 0.4, 1.6, 2, 0.3, 1.8, 1.3, 0.9}, h = 1e-6;
-  double volume, gradient[12], hessian[144], high, low, slope_high[12], slope_low[12];
-  contact_shape_overlap(&shape, 0.4, tet, &volume, gradient, hessian);
+  double volume, gradient[12], high, low, energy, press[12], hessian[144], sides[2][12];
+  double rest = 1.1 * fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9))) / 6;
+  contact_shape_overlap(&shape, 0.4, tet, &volume, gradient);
+  contact_shape_press(&shape, 0.4, tet, rest, &volume, &energy, press, hessian, true);
   ck_assert_double_gt(volume, 1e-3);
+  ck_assert_double_gt(energy, 1e-4);
   ck_assert_double_lt(contact_shape_separation(&shape, 0.4, tet, INFINITY), 0);
   for (int k = 0; k < 12; k++) {
-    double kept = tet[k];
-    tet[k] = kept + h;
-    contact_shape_overlap(&shape, 0.4, tet, &high, slope_high, NULL);
-    tet[k] = kept - h;
-    contact_shape_overlap(&shape, 0.4, tet, &low, slope_low, NULL);
+    double kept = tet[k], energies[2];
+    for (int side = 0; side < 2; side++) {
+      tet[k] = kept + (side ? -h : h);
+      contact_shape_overlap(&shape, 0.4, tet, side ? &low : &high, NULL);
+      contact_shape_press(&shape, 0.4, tet, rest, &volume, &energies[side], sides[side], NULL, true);
+    }
     tet[k] = kept;
     ck_assert_near(gradient[k], (high - low) / (2 * h), 1e-8);
+    ck_assert_near(press[k], (energies[0] - energies[1]) / (2 * h), 1e-8);
     for (int r = 0; r < 12; r++)
-      ck_assert_near(hessian[12 * r + k], (slope_high[r] - slope_low[r]) / (2 * h), 1e-6);
+      ck_assert_near(hessian[12 * r + k], (sides[0][r] - sides[1][r]) / (2 * h), 1e-6);
   }
 }
 END_TEST
@@ -307,7 +312,7 @@ int main(void) {
   tcase_add_loop_test(test_case, forces_are_minus_the_gradient_of_the_energy, 0, 4);
   tcase_add_loop_test(test_case, the_power_of_a_moving_shape_is_the_rate_of_the_energy, 0, 4);
   tcase_add_test(test_case, material_of_a_turning_ball_moves_with_it);
-  tcase_add_loop_test(test_case, a_turned_solid_has_the_derivatives_of_its_volume, 2, 4);
+  tcase_add_loop_test(test_case, a_turned_solid_has_the_derivatives_of_its_volume_and_energy, 2, 4);
   tcase_add_loop_test(test_case, no_corner_of_a_turning_solid_moves_farther_than_it_says, 2, 4);
   tcase_add_loop_test(test_case, clearance_is_never_more_than_the_distance_of_any_element, 0, 4);
   tcase_add_test(test_case, a_wrong_shape_is_refused);

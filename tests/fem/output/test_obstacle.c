@@ -153,7 +153,7 @@ static bool is_met(const ContactShape *shape, double time, Vec3 x, double size) 
   static const double arms[4][3] = {{1, 1, 1}, {-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}};
   double tet[12], volume;
   for (int v = 0; v < 4; v++) vec3_store(tet + 3 * v, vec3_add(x, vec3_scale(size, vec3_at(arms[v]))));
-  contact_shape_overlap(shape, time, tet, &volume, NULL, NULL);
+  contact_shape_overlap(shape, time, tet, &volume, NULL);
   return volume > 0;
 }
 
