@@ -9,7 +9,6 @@
 #include "contact/audit.h"
 #include "contact/footprint.h"
 #include "contact/pressure/star_sink.h"
-#include "contact/pressure/trace.h"
 #include "contact/rest.h"
 #include "contact/search/near.h"
 #include "contact/shape/shape.h"
@@ -33,9 +32,9 @@ struct ContactSystem {
   ContactStiffness stiffness;
   ContactEvaluation audits[2]; // candidate, reference; made by the first audit
   bool has_audits;
-  // Made when they are first asked for: of the evaluation, of what rests, and scratch by given vertices.
-  ContactTrace *traces, *resting_traces, *given_traces;
-  ContactStatus status; // made when it is first asked for
+  // Made when they are first asked for: of the evaluation, and of what rests.
+  ContactTrace *traces, *resting_traces; //                         (given vertex_count)
+  ContactStatus status;                  // made when it is first asked for
   bool has_status;
   ContactCounters counters;
 };
@@ -118,7 +117,6 @@ void contact_system_destroy(ContactSystem *system) {
   contact_status_destroy(&system->status);
   memory_free(system->traces);
   memory_free(system->resting_traces);
-  memory_free(system->given_traces);
   memory_free(system);
 }
 
@@ -260,38 +258,35 @@ static Status make_rest(ContactSystem *system) {
   return STATUS_OK;
 }
 
-static bool reserve_traces(ContactTrace **traces, int count) {
-  if (!*traces) *traces = memory_zeroed((size_t)count, sizeof **traces);
-  return *traces;
+static Status reserve_traces(ContactSystem *system, ContactTrace **traces) {
+  size_t count = (size_t)system->stars.given_vertex_count;
+  if (!*traces) *traces = memory_zeroed(count, sizeof **traces);
+  return *traces ? STATUS_OK : status_no_memory("pressures at the surface");
 }
 
 // Of what is put to rest by an evaluation.
 static Status keep_traces(ContactSystem *system) {
   const ContactLayout *layout = &system->layout;
   if (!contact_layout_has_field(layout)) return STATUS_OK;
-  if (!reserve_traces(&system->resting_traces, layout->def.vertex_count))
-    return status_no_memory("contact at rest");
-  memset(system->resting_traces, 0, (size_t)layout->def.vertex_count * sizeof(ContactTrace));
-  contact_trace_add(layout, &system->evaluation, system->rest.is_resting, system->resting_traces);
+  TRY(reserve_traces(system, &system->resting_traces));
+  memset(system->resting_traces, 0, (size_t)system->stars.given_vertex_count * sizeof(ContactTrace));
+  contact_trace_add(layout, &system->stars, &system->evaluation, system->rest.is_resting, NULL,
+                    system->resting_traces);
   return STATUS_OK;
 }
 
-Status contact_system_trace(ContactSystem *system, const ContactEvaluation *evaluation, double *pressures,
-                            double *depths) {
+Status contact_system_trace(ContactSystem *system, const ContactEvaluation *evaluation,
+                            const double (*pulls)[3], const ContactTraceResult *result) {
   const ContactLayout *layout = &system->layout;
-  size_t count = (size_t)layout->def.vertex_count, given = (size_t)system->stars.given_vertex_count;
-  memset(pressures, 0, given * sizeof *pressures);
-  memset(depths, 0, given * sizeof *depths);
-  if (!contact_layout_has_field(layout)) return STATUS_OK;
-  if (!reserve_traces(&system->traces, layout->def.vertex_count) ||
-      !reserve_traces(&system->given_traces, system->stars.given_vertex_count))
-    return status_no_memory("pressures at the surface");
+  int count = system->stars.given_vertex_count;
+  TRY(reserve_traces(system, &system->traces));
   if (system->resting_traces && system->has_rest && system->rest.resting_count > 0)
-    memcpy(system->traces, system->resting_traces, count * sizeof *system->traces);
+    memcpy(system->traces, system->resting_traces, (size_t)count * sizeof *system->traces);
   else
-    memset(system->traces, 0, count * sizeof *system->traces);
-  contact_trace_add(layout, evaluation, NULL, system->traces);
-  contact_trace_divide(layout, &system->stars, system->traces, system->given_traces, pressures, depths);
+    memset(system->traces, 0, (size_t)count * sizeof *system->traces);
+  if (contact_layout_has_field(layout))
+    contact_trace_add(layout, &system->stars, evaluation, NULL, pulls, system->traces);
+  contact_trace_find(count, system->traces, result);
   return STATUS_OK;
 }
 
@@ -416,11 +411,11 @@ size_t contact_system_bytes(const ContactSystem *system) {
   size_t sum = memory_held(system) + memory_held(system->positions) + memory_held(system->velocities) +
                memory_held(system->given_forces) + memory_held(system->given_covered) +
                memory_held(system->given_volumes) + memory_held(system->traces) +
-               memory_held(system->resting_traces) + memory_held(system->given_traces) +
-               contact_stars_bytes(&system->stars) + contact_star_sink_bytes(&system->star_sink) +
-               contact_footprint_layout(&system->layout) + contact_footprint_candidates(&system->candidates) +
-               contact_footprint_near(&system->near) + contact_stiffness_bytes(&system->stiffness) +
-               contact_footprint_status(&system->status) + contact_footprint_rest(&system->rest);
+               memory_held(system->resting_traces) + contact_stars_bytes(&system->stars) +
+               contact_star_sink_bytes(&system->star_sink) + contact_footprint_layout(&system->layout) +
+               contact_footprint_candidates(&system->candidates) + contact_footprint_near(&system->near) +
+               contact_stiffness_bytes(&system->stiffness) + contact_footprint_status(&system->status) +
+               contact_footprint_rest(&system->rest);
   for (int k = 0; k < 2; k++) sum += contact_footprint_evaluation(&system->audits[k]);
   return sum + contact_footprint_evaluation(&system->evaluation);
 }

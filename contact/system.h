@@ -27,6 +27,7 @@
 #include "contact/audit.h"
 #include "contact/def.h"
 #include "contact/evaluation.h"
+#include "contact/pressure/trace.h"
 #include "contact/status.h"
 #include "contact/stiffness.h"
 #include "contact/surface/stars.h"
@@ -99,10 +100,11 @@ Status contact_system_stiffness(ContactSystem *system, const ContactEvaluation *
 Status contact_system_couple(ContactSystem *system, const ContactEvaluation *evaluation, double reach,
                              void *visitor, Status (*visit)(void *visitor, int count, const int *vertices));
 
-// Pressure [Pa] and depth [m] at the surface by contact/pressure/trace.h, those at rest included
-// (vertex_count). With another potential than `field` zeros.
-Status contact_system_trace(ContactSystem *system, const ContactEvaluation *evaluation, double *pressures,
-                            double *depths);
+// Pressure, depth and traction at the surface by contact/pressure/trace.h, those at rest included, but for
+// their friction. `pulls`: friction on side 0 of each pair of the evaluation [N]; NULL: none. With another
+// potential than `field` zeros.
+Status contact_system_trace(ContactSystem *system, const ContactEvaluation *evaluation,
+                            const double (*pulls)[3], const ContactTraceResult *result);
 // The power that moving shapes put in [W]: ∂U/∂t at fixed positions.
 double contact_system_shape_power(const ContactSystem *system, const ContactEvaluation *evaluation);
 // The pairs of meshes with V > 0, as handed to the model (in general position), for audits. Owned by the

@@ -360,7 +360,7 @@ static int collect(ContactStick *stick, const ContactStickNode *node) {
 static void find_tangents(Vec3 normal, Vec3 along, Vec3 tangent[2]) {
   double length = vec3_length(along);
   if (!(length > 0)) {
-    along = vec3_cross(normal, fabs(normal.x) < 0.6 ? (Vec3){1, 0, 0} : (Vec3){0, 1, 0});
+    along = vec3_cross(normal, fabs(normal.x) < 0.5 ? (Vec3){1, 0, 0} : (Vec3){0, 1, 0});
     length = vec3_length(along);
   }
   tangent[0] = vec3_scale(1 / length, along);

@@ -2,48 +2,221 @@
 #include "contact/pressure/trace.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/vec3.h"
+#include "contact/shape/shape.h"
 
-static void add(ContactTrace *sum, double weight, const ContactTrace *trace) {
-  sum->force += weight * trace->force;
-  sum->area += weight * trace->area;
-  sum->volume += weight * trace->volume;
+// What is a smaller share of the other counts as nothing: how far samples spread along a direction, squared,
+// of their squared distance, or how far a line passes beside a cell, of the cell.
+static const double NOTHING = 1e-3;
+// A value is at most this many times the mean of its samples: of one that falls to 0 within them it is 1.5.
+static const double MOST = 2;
+
+// ---- Samples.
+
+typedef struct Sample {
+  Vec3 x, force, pull; // on the side that is looked at
+  double area, pressure, depth;
+} Sample;
+
+static void add_sample(const Sample *sample, double lambda, Vec3 vertex, ContactTrace *trace) {
+  Vec3 r = vec3_sub(sample->x, vertex);
+  double w = lambda * sample->area;
+  const double values[CONTACT_TRACE_VALUES] = {sample->pressure, sample->depth},
+               squares[6] = {r.x * r.x, r.y * r.y, r.z * r.z, r.x * r.y, r.y * r.z, r.x * r.z};
+  trace->weight += w;
+  trace->pressed += lambda * vec3_length(sample->force);
+  vec3_accumulate(trace->force, vec3_scale(lambda, sample->force));
+  vec3_accumulate(trace->rub, vec3_scale(lambda, sample->pull));
+  vec3_accumulate(trace->arm, vec3_scale(w, r));
+  for (int k = 0; k < 6; k++) trace->spread[k] += w * squares[k];
+  for (int k = 0; k < CONTACT_TRACE_VALUES; k++) {
+    trace->values[k] += w * values[k];
+    vec3_accumulate(trace->moments[k], vec3_scale(w * values[k], r));
+  }
 }
 
-void contact_trace_add(const ContactLayout *layout, const ContactEvaluation *evaluation,
-                       const bool *is_wanted, ContactTrace *traces) {
+// Whether the line through x along a direction meets a cell: λ + t μ ≥ 0 for all four somewhere.
+static bool meets_cell(const ContactLayout *layout, const double *positions, int cell, Vec3 x,
+                       Vec3 direction) {
+  Vec3 c[4], e[3], across[3];
+  double lambda[4], mu[4], least = -INFINITY, most = INFINITY;
+  for (int v = 0; v < 4; v++) c[v] = vec3_at(positions + 3 * (size_t)layout->mesh.cells[cell][v]);
+  for (int k = 0; k < 3; k++) e[k] = vec3_sub(c[k + 1], c[0]);
+  for (int k = 0; k < 3; k++) across[k] = vec3_cross(e[(k + 1) % 3], e[(k + 2) % 3]);
+  double whole = vec3_dot(e[0], across[0]);
+  lambda[0] = 1, mu[0] = 0;
+  for (int k = 0; k < 3; k++) {
+    lambda[k + 1] = vec3_dot(across[k], vec3_sub(x, c[0])) / whole;
+    mu[k + 1] = vec3_dot(across[k], direction) / whole;
+    lambda[0] -= lambda[k + 1], mu[0] -= mu[k + 1];
+  }
+  for (int v = 0; v < 4; v++) {
+    double at = -(lambda[v] + NOTHING) / mu[v];
+    if (mu[v] > 0) least = fmax(least, at);
+    if (mu[v] < 0) most = fmin(most, at);
+    if (mu[v] == 0 && !(lambda[v] >= -NOTHING)) return false;
+  }
+  return least <= most;
+}
+
+// Whether a vertex has what the pair has on the other side before it, or behind, along the force on it.
+static bool faces_other(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, int side,
+                        Vec3 x, Vec3 force) {
+  const ContactPair *pair = &evaluation->pairs[k];
+  Vec3 inward = vec3_scale(1 / vec3_length(force), force);
+  int other = pair->cells[1 - side];
+  if (other >= 0) return meets_cell(layout, evaluation->positions, other, x, inward);
+  const ContactShape *shape = &layout->def.shapes[layout->interfaces[pair->interface].shape];
+  double size = cbrt(contact_layout_tet_volume(layout, pair->cells[side]));
+  return contact_shape_gap(shape, evaluation->time, vec3_sub(x, vec3_scale(size, inward))) <= 0;
+}
+
+static int carrier_count(const ContactStars *stars, int vertex) {
+  return stars->is_needed ? stars->begin[vertex + 1] - stars->begin[vertex] : 1;
+}
+
+static int carrier(const ContactStars *stars, int vertex, int k, double *weight) {
+  *weight = stars->is_needed ? stars->weights[stars->begin[vertex] + k] : 1;
+  return stars->is_needed ? stars->nodes[stars->begin[vertex] + k] : vertex;
+}
+
+// Carriers of less than half of the largest weight are not beside the vertex.
+static double least_weight(const ContactStars *stars, int vertex) {
+  double weight, largest = 0;
+  int count = carrier_count(stars, vertex);
+  for (int c = 0; c < count; c++) {
+    carrier(stars, vertex, c, &weight);
+    largest = fmax(largest, weight);
+  }
+  return 0.5 * largest;
+}
+
+// Where a given vertex is.
+static Vec3 place_of(const ContactStars *stars, const ContactEvaluation *evaluation, int given) {
+  int vertex = stars->is_needed ? stars->place[given] : given;
+  return vec3_at(evaluation->positions + 3 * (size_t)vertex);
+}
+
+static void add_side(const ContactLayout *layout, const ContactStars *stars,
+                     const ContactEvaluation *evaluation, int k, int side, const Sample *sample,
+                     ContactTrace *traces) {
+  const ContactPair *pair = &evaluation->pairs[k];
+  const int *vertices = contact_layout_vertices(layout, pair->cells[side]);
+  for (int v = 0; v < 4; v++) {
+    double lambda = fmax(evaluation->fields[k].weights[side][v], 0), weight;
+    if (layout->mesh.depths[vertices[v]] > 0) continue;
+    int count = carrier_count(stars, vertices[v]);
+    double least = least_weight(stars, vertices[v]);
+    for (int c = 0; c < count; c++) {
+      int given = carrier(stars, vertices[v], c, &weight);
+      if (!(weight >= least)) continue;
+      Vec3 x = place_of(stars, evaluation, given);
+      add_sample(sample, lambda * weight, x, &traces[given]);
+    }
+  }
+}
+
+// The vertices that a side has for its own; their forces are summed up.
+static void face_side(const ContactLayout *layout, const ContactStars *stars,
+                      const ContactEvaluation *evaluation, int k, int side, ContactTrace *traces) {
+  const int *vertices = contact_layout_vertices(layout, evaluation->pairs[k].cells[side]);
+  for (int v = 0; v < 4; v++) {
+    double weight;
+    if (layout->mesh.depths[vertices[v]] > 0 || carrier_count(stars, vertices[v]) != 1) continue;
+    int given = carrier(stars, vertices[v], 0, &weight);
+    ContactTrace *trace = &traces[given];
+    if (!trace->is_faced && trace->pressed > 0)
+      trace->is_faced =
+          faces_other(layout, evaluation, k, side, place_of(stars, evaluation, given), vec3_at(trace->force));
+  }
+}
+
+void contact_trace_add(const ContactLayout *layout, const ContactStars *stars,
+                       const ContactEvaluation *evaluation, const bool *is_wanted, const double (*pulls)[3],
+                       ContactTrace *traces) {
   for (int k = 0; k < evaluation->pair_count; k++) {
     const ContactPair *pair = &evaluation->pairs[k];
     const ContactFieldPair *field = &evaluation->fields[k];
-    if (is_wanted && !is_wanted[pair->interface]) continue;
-    ContactTrace trace = {.force = vec3_length(vec3_at(field->force)),
-                          .area = contact_field_area(field),
-                          .volume = field->volume};
-    for (int side = 0; side < 2 && pair->cells[side] >= 0; side++)
-      for (int v = 0; v < 4; v++)
-        add(&traces[contact_layout_vertices(layout, pair->cells[side])[v]], fmax(field->weights[side][v], 0),
-            &trace);
+    double area = contact_field_area(field);
+    if ((is_wanted && !is_wanted[pair->interface]) || !(area > 0)) continue;
+    for (int side = 0; side < 2 && pair->cells[side] >= 0; side++) {
+      double sign = side == 0 ? 1 : -1;
+      Sample sample = {.x = vec3_at(field->centroid),
+                       .force = vec3_scale(sign, vec3_at(field->force)),
+                       .area = area,
+                       .pressure = vec3_length(vec3_at(field->force)) / area,
+                       .depth = field->volume / area};
+      if (pulls) sample.pull = vec3_scale(sign, vec3_at(pulls[k]));
+      add_side(layout, stars, evaluation, k, side, &sample, traces);
+    }
   }
+  for (int k = 0; k < evaluation->pair_count; k++)
+    for (int side = 0; side < 2 && evaluation->pairs[k].cells[side] >= 0; side++)
+      if (!is_wanted || is_wanted[evaluation->pairs[k].interface])
+        face_side(layout, stars, evaluation, k, side, traces);
 }
 
-void contact_trace_divide(const ContactLayout *layout, const ContactStars *stars, const ContactTrace *traces,
-                          ContactTrace *sums, double *pressures, double *depths) {
-  int count = stars->given_vertex_count;
-  memset(sums, 0, (size_t)count * sizeof *sums);
-  for (int v = 0; v < layout->def.vertex_count; v++) {
-    if (layout->mesh.depths[v] > 0 || !(traces[v].area > 0)) continue;
-    if (!stars->is_needed) {
-      add(&sums[v], 1, &traces[v]);
-      continue;
-    }
-    for (int r = stars->begin[v]; r < stars->begin[v + 1]; r++)
-      add(&sums[stars->nodes[r]], fmax(stars->weights[r], 0), &traces[v]);
+// ---- Values.
+
+// The samples of a vertex in its tangent plane, along the axes of their spread.
+typedef struct Plane {
+  Vec3 axes[2];
+  double mean[2];   // m along them [m]
+  double spread[2]; // of C [m²]
+} Plane;
+
+static Vec3 spread_times(const double s[6], Vec3 a) {
+  return (Vec3){s[0] * a.x + s[3] * a.y + s[5] * a.z, s[3] * a.x + s[1] * a.y + s[4] * a.z,
+                s[5] * a.x + s[4] * a.y + s[2] * a.z};
+}
+
+static Plane find_plane(const ContactTrace *trace, Vec3 normal) {
+  Vec3 t = vec3_cross(normal, fabs(normal.x) < 0.5 ? (Vec3){1, 0, 0} : (Vec3){0, 1, 0});
+  t = vec3_scale(1 / vec3_length(t), t);
+  const Vec3 axes[2] = {t, vec3_cross(normal, t)};
+  Vec3 mean = vec3_scale(1 / trace->weight, vec3_at(trace->arm));
+  double c[2][2], m[2];
+  for (int i = 0; i < 2; i++) m[i] = vec3_dot(mean, axes[i]);
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++)
+      c[i][j] = vec3_dot(axes[i], spread_times(trace->spread, axes[j])) / trace->weight - m[i] * m[j];
+  double angle = 0.5 * atan2(2 * c[0][1], c[0][0] - c[1][1]), cosine = cos(angle), sine = sin(angle);
+  double middle = 0.5 * (c[0][0] + c[1][1]), half = hypot(0.5 * (c[0][0] - c[1][1]), c[0][1]);
+  return (Plane){.axes = {vec3_add(vec3_scale(cosine, axes[0]), vec3_scale(sine, axes[1])),
+                          vec3_sub(vec3_scale(cosine, axes[1]), vec3_scale(sine, axes[0]))},
+                 .mean = {cosine * m[0] + sine * m[1], cosine * m[1] - sine * m[0]},
+                 .spread = {fmax(0, middle + half), fmax(0, middle - half)}};
+}
+
+static double value_at(const ContactTrace *trace, const Plane *plane, int value) {
+  double mean = trace->values[value] / trace->weight, at = mean;
+  for (int k = 0; k < 2; k++) {
+    double together = vec3_dot(vec3_at(trace->moments[value]), plane->axes[k]) / trace->weight -
+                      mean * plane->mean[k],
+           spread = plane->spread[k] + NOTHING * plane->mean[k] * plane->mean[k];
+    if (spread > 0) at -= together / spread * plane->mean[k];
   }
+  return fmin(fmax(at, 0), MOST * mean);
+}
+
+static void find(const ContactTrace *trace, double *pressure, double *depth, double traction[3]) {
+  *pressure = *depth = 0;
+  for (int c = 0; c < 3; c++) traction[c] = 0;
+  double length = vec3_length(vec3_at(trace->force));
+  if (!(trace->is_faced && trace->weight > 0 && length > 0)) return;
+  Vec3 towards = vec3_scale(1 / length, vec3_at(trace->force));
+  Plane plane = find_plane(trace, towards);
+  *pressure = value_at(trace, &plane, CONTACT_TRACE_PRESSURE);
+  *depth = value_at(trace, &plane, CONTACT_TRACE_DEPTH);
+  vec3_store(traction,
+             vec3_scale(*pressure, vec3_add(towards, vec3_scale(1 / trace->pressed, vec3_at(trace->rub)))));
+}
+
+void contact_trace_find(int count, const ContactTrace *traces, const ContactTraceResult *result) {
   for (int v = 0; v < count; v++) {
-    bool presses = sums[v].area > 0;
-    pressures[v] = presses ? sums[v].force / sums[v].area : 0;
-    depths[v] = presses ? sums[v].volume / sums[v].area : 0;
+    double own[3];
+    find(&traces[v], &result->pressures[v], &result->depths[v],
+         result->tractions ? result->tractions[v] : own);
   }
 }

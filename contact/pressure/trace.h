@@ -1,34 +1,51 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What presses on a surface and how deep, by vertices: of the pairs that meet a vertex, by the weights λ(x̄)
-// with which they act on it, the force, the area that they cover and the overlap's volume. Potential `field`
-// only.
+// Pressure, depth and traction at the vertices of a surface, right up to the rim. Potential `field` only.
 //
-//   p_a = Σ λ_a |F_ij| / Σ λ_a A_ij,    d_a = Σ λ_a V_ij / Σ λ_a A_ij,    A_ij = V_ij / d_ij
-//   (contact_field_area)
+// Every pair of cells is a sample: at the centroid x̄ of its overlap the depth is exactly D = V/A and the
+// pressure p = |F|/A (A: contact_field_area) wherever D is linear within the pair, also where a rim cuts it.
+// Round a vertex a, with w = λ_a A, the samples are fitted by a linear function in the tangent plane, whose
+// value at a is taken (a recovery as by Zienkiewicz and Zhu 1992):
 //
-// Of flat surfaces that overlap by d: d, and 2 c d (c d against a shape), up to the rim, since only what is
-// covered counts.
+//   r = x̄ − x_a,   m = Σ w r / Σ w,   C = Σ w r rᵀ / Σ w − m mᵀ,   p_a = p̄ − g·m,   C g = Σ w p r / Σ w − p̄ m
+//
+// Along a direction in which the samples hardly spread, against their distance, g is taken back to 0. So p is
+// exact up to the edge of a punch, where the mean would be, and up to a rim where it falls to 0, where the
+// mean is far too large. A vertex that no cell of its pairs lies before or behind, along their forces, is
+// beyond the edge of the other body: 0.
 #ifndef TETLAP_CONTACT_TRACE_H
 #define TETLAP_CONTACT_TRACE_H
 
 #include "contact/evaluation.h"
 #include "contact/surface/stars.h"
 
+enum { CONTACT_TRACE_PRESSURE, CONTACT_TRACE_DEPTH, CONTACT_TRACE_VALUES };
+
+// Sums over the samples round a vertex as it was given, on its own body.
 typedef struct ContactTrace {
-  double force;  // Σ λ |F| [N]
-  double area;   // Σ λ A [m²]
-  double volume; // Σ λ V [m³]
+  double weight;                           // Σ w [m²]
+  double pressed;                          // Σ λ |F| [N]
+  double force[3];                         // Σ λ F [N]
+  double rub[3];                           // Σ λ T, T the friction of a pair [N]
+  double arm[3];                           // Σ w r [m³]
+  double spread[6];                        // Σ w r rᵀ: xx, yy, zz, xy, yz, xz [m⁴]
+  double values[CONTACT_TRACE_VALUES];     // Σ w p [N], Σ w D [m³]
+  double moments[CONTACT_TRACE_VALUES][3]; // Σ w p r, Σ w D r
+  bool is_faced;                           // another body lies before or behind the vertex, along the force
 } ContactTrace;
 
-// Adds those of the evaluation's pairs to the traces of the contact mesh (vertex_count). `is_wanted` by
-// interfaces; NULL: all.
-void contact_trace_add(const ContactLayout *layout, const ContactEvaluation *evaluation,
-                       const bool *is_wanted, ContactTrace *traces);
+// What follows for the given vertices; 0 where nothing presses and inside of bodies.
+typedef struct ContactTraceResult {
+  double *pressures;      // [Pa]                                     (given vertex_count)
+  double *depths;         // of the overlap [m]                       (given vertex_count)
+  double (*tractions)[3]; // on the surface, friction included [Pa]; NULL: not wanted   (given vertex_count)
+} ContactTraceResult;
 
-// Pressures [Pa] and depths [m] of the given vertices from the traces of the contact mesh; 0 where nothing
-// presses and inside of bodies. What a star carries counts where its weight is positive. `sums` (given
-// vertex_count) is scratch.
-void contact_trace_divide(const ContactLayout *layout, const ContactStars *stars, const ContactTrace *traces,
-                          ContactTrace *sums, double *pressures, double *depths);
+// Adds the evaluation's pairs to the traces (given vertex_count). `is_wanted` by interfaces; NULL: all.
+// `pulls`: friction on side 0 of each pair [N]; NULL: none.
+void contact_trace_add(const ContactLayout *layout, const ContactStars *stars,
+                       const ContactEvaluation *evaluation, const bool *is_wanted, const double (*pulls)[3],
+                       ContactTrace *traces);
+
+void contact_trace_find(int count, const ContactTrace *traces, const ContactTraceResult *result);
 
 #endif

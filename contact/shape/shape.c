@@ -202,6 +202,21 @@ double contact_shape_separation(const ContactShape *shape, double time, const do
                                            : overlap_separation_halfspace(tet, point, shape->normal);
 }
 
+double contact_shape_gap(const ContactShape *shape, double time, Vec3 x) {
+  if (shape->kind == CONTACT_SHAPE_CONVEX) {
+    Pose pose = pose_of(shape, time);
+    Vec3 arm = vec3_sub(x, pose.point),
+         own = {vec3_dot(pose.axes[0], arm), vec3_dot(pose.axes[1], arm), vec3_dot(pose.axes[2], arm)};
+    double farthest = -INFINITY;
+    for (int k = 0; k < shape->convex->plane_count; k++)
+      farthest = fmax(farthest, vec3_dot(shape->convex->normals[k], own) - shape->convex->offsets[k]);
+    return farthest;
+  }
+  Vec3 arm = vec3_sub(x, contact_shape_point(shape, time));
+  return shape->kind == CONTACT_SHAPE_BALL ? vec3_length(arm) - shape->radius
+                                           : vec3_dot(vec3_at(shape->normal), arm);
+}
+
 static double distance_to_box(Vec3 x, const double *positions, int begin, int end) {
   const double at[3] = {x.x, x.y, x.z};
   double square = 0;

@@ -36,6 +36,10 @@ ContactShape contact_shape_shrink(const ContactShape *shape, double depth, struc
 // overlap/separation.h, ending early with a lower bound once it exceeds `enough`.
 double contact_shape_separation(const ContactShape *shape, double time, const double tet[12], double enough);
 
+// Distance of x from the shape's surface [m], negative inside; beyond an edge of a convex solid that from the
+// farthest of its planes, which is less.
+double contact_shape_gap(const ContactShape *shape, double time, Vec3 x);
+
 // A lower bound of the distance of vertices begin … end, and of all between them, from the shape [m].
 double contact_shape_clearance(const ContactShape *shape, double time, const double *positions, int begin,
                                int end);

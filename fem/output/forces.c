@@ -31,7 +31,9 @@ static Status create_of_vertices(FemForces *forces, bool has_friction) {
   if (model->scene->contact.potential != CONTACT_POTENTIAL_FIELD) return STATUS_OK;
   forces->pressure = memory_zeroed(vertices, sizeof *forces->pressure);
   forces->depth = memory_zeroed(vertices, sizeof *forces->depth);
-  return forces->pressure && forces->depth ? STATUS_OK : status_no_memory("the contact forces");
+  forces->traction = memory_zeroed(values_of(forces), sizeof *forces->traction);
+  return forces->pressure && forces->depth && forces->traction ? STATUS_OK
+                                                               : status_no_memory("the contact forces");
 }
 
 Status fem_forces_create(FemForces *forces, const FemSystem *system, bool with_vertices) {
@@ -59,6 +61,7 @@ void fem_forces_destroy(FemForces *forces) {
   memory_free(forces->rubbing);
   memory_free(forces->pressure);
   memory_free(forces->depth);
+  memory_free(forces->traction);
   *forces = (FemForces){0};
 }
 
@@ -99,6 +102,19 @@ Status fem_forces_take(FemForces *forces, const FemState *state) {
     memcpy(forces->contact, evaluation->given_forces, values_of(forces) * sizeof *forces->contact);
   TRY(take_friction(forces, state));
   if (viscosity) TRY(fem_effect_viscosity_add(viscosity, state, forces->interfaces, forces->contact));
+  return STATUS_OK;
+}
+
+Status fem_forces_take_surface(FemForces *forces, const FemState *state) {
+  void *stick = fem_system_effect(forces->system, &fem_effect_stick);
+  const ContactEvaluation *evaluation;
+  const ContactStick *law = NULL;
   if (!forces->pressure) return STATUS_OK;
-  return contact_system_trace(contact_of(system), evaluation, forces->pressure, forces->depth);
+  TRY(fem_effect_contact_evaluate(forces->system, state, &evaluation));
+  if (stick) TRY(fem_effect_stick_evaluate(stick, state, &law));
+  return contact_system_trace(contact_of(forces->system), evaluation,
+                              law ? (const double(*)[3])law->pulls : NULL,
+                              &(ContactTraceResult){.pressures = forces->pressure,
+                                                    .depths = forces->depth,
+                                                    .tractions = (double(*)[3])forces->traction});
 }

@@ -26,6 +26,7 @@ typedef struct FemForces {
   FemRubbing *rubbing;     // NULL: no friction                           (interface_count)
   double *pressure; // at the surface [Pa]; NULL: not wanted, or the potential has none   (vertex_count)
   double *depth;    // likewise [m]                                (vertex_count)
+  double *traction; // likewise, friction included [Pa]            (vertex_count, 3)
 } FemForces;
 
 // With forces of vertices, or of interfaces alone. Without contact all is NULL. A zeroed one, and one whose
@@ -37,5 +38,7 @@ bool fem_forces_has_friction(const FemSystem *system);
 
 // Those of a state.
 Status fem_forces_take(FemForces *forces, const FemState *state);
+// Of the same state, what is told at the surface.
+Status fem_forces_take_surface(FemForces *forces, const FemState *state);
 
 #endif

@@ -367,6 +367,7 @@ static Status write_vtu(FemRecorder *recorder, const char *name) {
       {.name = "contact_force", .components = 3, .reals = recorder->forces.contact},
       {.name = "contact_pressure", .components = 1, .reals = recorder->forces.pressure},
       {.name = "contact_depth", .components = 1, .reals = recorder->forces.depth},
+      {.name = "contact_traction", .components = 3, .reals = recorder->forces.traction},
       {.name = "overlap_fraction",
        .is_cell = true,
        .components = 1,
@@ -404,6 +405,7 @@ Status fem_recorder_continue(FemRecorder *recorder, JournalMark history, int fra
 static Status write_frame(FemRecorder *recorder) {
   char name[NAME_SIZE];
   snprintf(name, sizeof name, "frame_%05d", recorder->frame_count);
+  TRY(fem_forces_take_surface(&recorder->forces, recorder->state));
   TRY(write_vtu(recorder, name));
   TRY(fem_obstacle_frames_write(&recorder->obstacles, recorder->directory, recorder->frame_count,
                                 recorder->state->time));

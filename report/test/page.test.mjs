@@ -220,16 +220,17 @@ const tests = {
 
   async "colours by every field"(page) {
     const names = await page.eval(`[...document.querySelectorAll("#field option")].map((option) => option.value)`);
-    for (const wanted of ["von_mises", "contact_force", "overlap_fraction", "det_F", "body"]) assert.ok(names.includes(wanted), wanted);
+    for (const wanted of ["von_mises", "contact_force", "contact_traction", "overlap_fraction", "det_F", "body"]) assert.ok(names.includes(wanted), wanted);
     await page.eval("tetlap.transport.seek(14)");
     const pictures = new Set();
     const marks = names.filter((name) => ["trouble", "wrong_way"].includes(name)); // borne by nothing, they look alike
+    const same = ["contact_traction"]; // without friction as large as the pressure
     for (const name of names.filter((other) => !marks.includes(other))) {
       await page.eval(`tetlap.state.set({ field: ${JSON.stringify(name)} })`);
       await page.until(`tetlap.stage.fields.some((field) => field?.name === ${JSON.stringify(name)})`);
       pictures.add(await page.eval(PICTURE));
     }
-    assert.equal(pictures.size, names.length - marks.length);
+    assert.equal(pictures.size, names.length - marks.length - same.length);
     assert.equal(marks.length, 2);
     await page.eval(`tetlap.state.set({ field: "von_mises" })`);
   },

@@ -228,7 +228,8 @@ START_TEST(traces_tell_pressure_and_depth_at_the_surface) {
   size_t count = (size_t)scene.blocks.vertex_count;
   double *p = calloc(count, sizeof *p), *d = calloc(count, sizeof *d);
   ck_assert(p && d);
-  ck_assert_ok(contact_system_trace(scene.system, evaluated_at(scene.system, 0, scene.blocks.x), p, d));
+  ck_assert_ok(contact_system_trace(scene.system, evaluated_at(scene.system, 0, scene.blocks.x), NULL,
+                                    &(ContactTraceResult){.pressures = p, .depths = d}));
   int inside = 0, pressed = 0;
   for (int v = 0; v < scene.blocks.vertex_count; v++) {
     const double *x = scene.blocks.x + 3 * v;
@@ -243,6 +244,86 @@ START_TEST(traces_tell_pressure_and_depth_at_the_surface) {
   ck_assert_int_gt(inside, 8);
   ck_assert_int_lt(pressed, scene.blocks.vertex_count / 2);
   free(p), free(d), destroy(&scene);
+}
+END_TEST
+
+// Of the pressures p at the vertices that face the other block: within a share of what `exact` says of x, and
+// nothing where it says 0; how many press.
+static int expect_pressures(const Scene *scene, const double *p, double height, double share,
+                            double (*exact)(const double x[3], bool is_upper)) {
+  int pressed = 0;
+  for (int v = 0; v < scene->blocks.vertex_count; v++) {
+    const double *x = scene->blocks.x + 3 * v;
+    bool is_upper = v >= scene->blocks.bodies[0].vertex_end;
+    if (is_upper ? x[2] != height : x[2] != 0) continue;
+    double wanted = exact(x, is_upper);
+    ck_assert_msg(fabs(p[v] - wanted) <= share * wanted, "(%g, %g, %g): %g, not %g", x[0], x[1], x[2], p[v],
+                  wanted);
+    pressed += p[v] > 0;
+  }
+  return pressed;
+}
+
+enum { UPPER_SIDE = 5, MOST_VERTICES = 1500 };
+static const double DEPTH = 1e-3, SLOPE = 1e-3;
+
+static double under_a_punch(const double x[3], bool is_upper) {
+  const double low = -1.93, high = -1.93 + UPPER_SIDE * 0.77;
+  bool is_under = is_upper || (x[0] > low && x[0] < high && x[1] > low && x[1] < high);
+  return is_under ? 2 * STIFFNESS * DEPTH : 0;
+}
+
+// Up to the very edge of a punch, on both bodies, and nothing on the lower one beside it.
+START_TEST(the_pressure_is_told_up_to_the_edge_of_a_punch) {
+  Scene scene = {.system = NULL};
+  double p[MOST_VERTICES], d[MOST_VERTICES];
+  blocks_add(&scene.blocks, &(BlockDef){.corner = {-4, -4, -2}, .cell = {0.5, 0.5, 1}, .cells = {16, 16, 2}});
+  blocks_add(&scene.blocks, &(BlockDef){.corner = {-1.93, -1.93, -DEPTH},
+                                        .cell = {0.77, 0.77, 0.77},
+                                        .cells = {UPPER_SIDE, UPPER_SIDE, 2}});
+  start(&scene, "clip", true);
+  ck_assert_int_le(scene.blocks.vertex_count, MOST_VERTICES);
+  energy_at(&scene, scene.blocks.x);
+  ck_assert_ok(contact_system_trace(scene.system, evaluated_at(scene.system, 0, scene.blocks.x), NULL,
+                                    &(ContactTraceResult){.pressures = p, .depths = d}));
+  int pressed = expect_pressures(&scene, p, -DEPTH, 0.02, under_a_punch);
+  ck_assert_int_eq(pressed, (UPPER_SIDE + 1) * (UPPER_SIDE + 1) + 7 * 7);
+  destroy(&scene);
+}
+END_TEST
+
+static double under_a_tilted_face(const double x[3], bool is_upper) {
+  double depth = is_upper ? -x[2] : DEPTH - SLOPE * x[0];
+  return fmax(0, 2 * STIFFNESS * depth);
+}
+
+// Up to where it falls to nothing, x = 1 here: the last vertices before have .03 and .07 of the largest.
+START_TEST(the_pressure_is_told_up_to_where_it_ends) {
+  Scene scene = {.system = NULL};
+  double p[MOST_VERTICES], d[MOST_VERTICES], x[3 * MOST_VERTICES];
+  blocks_add(&scene.blocks, &(BlockDef){.corner = {-4, -4, -2}, .cell = {0.5, 0.5, 1}, .cells = {16, 16, 2}});
+  blocks_add(&scene.blocks,
+             &(BlockDef){.corner = {-5, -5, 0}, .cell = {0.77, 0.77, 0.77}, .cells = {13, 13, 2}});
+  start(&scene, "clip", true);
+  ck_assert_int_le(scene.blocks.vertex_count, MOST_VERTICES);
+  memcpy(x, scene.blocks.x, 3 * (size_t)scene.blocks.vertex_count * sizeof *x);
+  for (int v = scene.blocks.bodies[1].vertex_begin; v < scene.blocks.vertex_count; v++)
+    x[3 * v + 2] += SLOPE * x[3 * v] - DEPTH;
+  energy_at(&scene, x);
+  ck_assert_ok(contact_system_trace(scene.system, evaluated_at(scene.system, 0, x), NULL,
+                                    &(ContactTraceResult){.pressures = p, .depths = d}));
+  int told = 0;
+  for (int v = 0; v < scene.blocks.vertex_count; v++) {
+    bool is_upper = v >= scene.blocks.bodies[0].vertex_end;
+    const double *X = scene.blocks.x + 3 * v;
+    if (X[2] != 0 || fabs(X[0]) > 3 || fabs(X[1]) > 3) continue;
+    double wanted = under_a_tilted_face(x + 3 * v, is_upper);
+    ck_assert_msg(fabs(p[v] - wanted) <= 0.02 * 2 * STIFFNESS * DEPTH, "(%g, %g): %g, not %g", X[0], X[1],
+                  p[v], wanted);
+    told += wanted > 0 && wanted < 0.6 * 2 * STIFFNESS * DEPTH;
+  }
+  ck_assert_int_gt(told, 10);
+  destroy(&scene);
 }
 END_TEST
 
@@ -412,6 +493,8 @@ int main(void) {
   tcase_add_test(tests, flat_slabs_press_evenly_whatever_the_meshes);
   tcase_add_test(tests, the_pressure_does_not_depend_on_the_mesh);
   tcase_add_test(tests, traces_tell_pressure_and_depth_at_the_surface);
+  tcase_add_test(tests, the_pressure_is_told_up_to_the_edge_of_a_punch);
+  tcase_add_test(tests, the_pressure_is_told_up_to_where_it_ends);
   tcase_add_test(tests, sliding_past_faces_that_coincide_costs_nothing);
   tcase_add_loop_test(tests, a_tilted_face_begins_with_no_leap, 0, 5);
   tcase_add_loop_test(tests, what_is_wholly_inside_is_pushed_out, 0, 4);

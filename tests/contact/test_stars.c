@@ -140,7 +140,8 @@ START_TEST(an_even_pressure_loads_the_middles_of_edges) {
   double *force = forces_at(&scene, scene.x), face = STIFFNESS * depth / 2; // a triangle's: p times its area
   int corners = 0, middles = 0;
   ck_assert_int_le(scene.vertex_count, 500);
-  ck_assert_ok(contact_system_trace(scene.system, evaluated_at(scene.system, 0, scene.x), pressures, depths));
+  ck_assert_ok(contact_system_trace(scene.system, evaluated_at(scene.system, 0, scene.x), NULL,
+                                    &(ContactTraceResult){.pressures = pressures, .depths = depths}));
   for (int v = 0; v < scene.vertex_count; v++) {
     const double *X = scene.rest + 3 * v;
     bool is_inside =

@@ -34,6 +34,7 @@ const FIELDS = {
   pressure: { label: "Pressure (−tr σ / 3)", unit: "Pa", middle: 0 },
   contact_force: { label: "Contact force", unit: "N" },
   contact_pressure: { label: "Contact pressure", unit: "Pa" },
+  contact_traction: { label: "Contact traction", unit: "Pa" },
   contact_depth: { label: "Contact depth", unit: "m" },
   overlap_fraction: { label: "Overlap fraction", unit: "" },
   det_F: { label: "Volume ratio det F", unit: "", middle: 1 },
@@ -46,7 +47,7 @@ const FIELDS = {
   body: { label: "Body", unit: "", isClass: true },
 };
 
-const ORDER = ["von_mises", "contact_force", "contact_pressure", "contact_depth", "overlap_fraction", "status_predicted", "status_exact", "status_error", "status_wrong_pairs", "det_F", "pressure", "velocity", "displacement", "body"];
+const ORDER = ["von_mises", "contact_force", "contact_pressure", "contact_traction", "contact_depth", "overlap_fraction", "status_predicted", "status_exact", "status_error", "status_wrong_pairs", "det_F", "pressure", "velocity", "displacement", "body"];
 
 export function describe(field) {
   const known = FIELDS[field.name];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A frame is a state of the motion: forces made anew from its positions, its velocities and the accepted
 // state before it are those that it holds. Frames are few against steps, so all of them lie within steps.
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -138,7 +139,9 @@ static void compare_forces(Replay *replay, const FemVtuContent *frame) {
   add(replay, &fem_effect_stick, replay->friction);
   const ContactEvaluation *contact;
   ck_assert_ok(fem_effect_contact_evaluate(&replay->system, &replay->state, &contact));
-  ck_assert_ok(contact_system_trace(contact_of(replay), contact, replay->pressure, replay->depth));
+  ck_assert_ok(
+      contact_system_trace(contact_of(replay), contact, NULL,
+                           &(ContactTraceResult){.pressures = replay->pressure, .depths = replay->depth}));
   compare(replay, frame, "contact_force", 3 * vertices, replay->force);
   compare(replay, frame, "friction_force", 3 * vertices, replay->friction);
   compare(replay, frame, "contact_pressure", vertices, replay->pressure);
@@ -360,8 +363,43 @@ START_TEST(stress_in_a_frame_has_the_plastic_strain_of_that_time) {
 }
 END_TEST
 
+// A block slides over another: at every vertex that presses, on either of the two, the traction is the
+// pressure and μ times it across.
+START_TEST(where_all_slides_the_traction_has_mu_times_the_pressure) {
+  const double friction = 0.4;
+  SceneRun run;
+  FemVtuContent frame;
+  char path[96];
+  int pressed[2] = {0, 0};
+  open_folder();
+  scene_open(&run, "drag", (const char *const[]){"output.vtu=true", "output.frames=20", NULL});
+  FemRunOptions options = {.directory = folder};
+  ck_assert_ok(fem_run(&run.model, &options, &run.result));
+  path_of_frame(run.scene.frames, path);
+  ck_assert_ok(fem_vtu_read(path, &frame));
+  const double *pressure = find_field(&frame, "contact_pressure"),
+               *traction = find_field(&frame, "contact_traction");
+  for (int v = 0; v < run.model.vertex_count; v++) {
+    Vec3 t = vec3_at(traction + 3 * (size_t)v);
+    if (pressure[v] == 0) {
+      ck_assert_double_eq(vec3_length(t), 0);
+      continue;
+    }
+    double across = sqrt(fmax(0, vec3_dot(t, t) / (pressure[v] * pressure[v]) - 1));
+    ck_assert_near(across, friction, 0.01 * friction); // normals of pairs differ by the tilt of their faces
+    pressed[v >= run.model.bodies[1].vertex_begin]++;
+  }
+  ck_assert_int_ge(pressed[0], 16);
+  ck_assert_int_ge(pressed[1], 4);
+  fem_vtu_read_destroy(&frame);
+  scene_close(&run);
+  remove_folder();
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("frame_state");
+  tcase_add_test(test_case, where_all_slides_the_traction_has_mu_times_the_pressure);
   tcase_add_loop_test(test_case, forces_made_anew_from_a_frame_are_those_that_it_holds, 0, CASES);
   tcase_add_test(test_case, forces_of_frames_are_mass_times_acceleration);
   tcase_add_loop_test(test_case, writing_frames_changes_no_bit_of_a_run, 0, 2);

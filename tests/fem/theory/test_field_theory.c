@@ -196,7 +196,9 @@ static Status look_at_line(void *self, const FemRunProgress *progress) {
   const FemModelBody *upper = &line->model->bodies[1];
   const ContactEvaluation *evaluation;
   ck_assert_ok(fem_effect_contact_evaluate(progress->system, &progress->system->accepted, &evaluation));
-  ck_assert_ok(contact_system_trace(contact, evaluation, line->pressures, line->depths));
+  ck_assert_ok(
+      contact_system_trace(contact, evaluation, NULL,
+                           &(ContactTraceResult){.pressures = line->pressures, .depths = line->depths}));
   memset(line->by_x, 0, sizeof line->by_x);
   for (int v = upper->vertex_begin; v < upper->vertex_end; v++)
     if (fabs(line->model->rest[3 * v + 2] - 0.1) < 1e-9)
