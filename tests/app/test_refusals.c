@@ -128,6 +128,14 @@ START_TEST(a_file_of_pytorch_is_refused_with_what_to_do) {
 }
 END_TEST
 
+// 2^53 + 1: read back from verdict.json as a double it would be 2^53.
+START_TEST(a_seed_that_verdict_json_would_round_is_refused) {
+  ck_assert_refused(64, "$tetlap verdict clip --quick --seed 9007199254740993 -o out",
+                    "keeps seeds up to 9007199254740992 exactly");
+  ck_assert_int_ne(access("out", F_OK), 0);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("refusals");
   tcase_add_checked_fixture(cases, enter_folder, leave_folder);
@@ -138,5 +146,6 @@ int main(void) {
   tcase_add_test(cases, a_capture_of_no_pairs_is_told);
   tcase_add_test(cases, stress_names_the_model_that_is_none);
   tcase_add_test(cases, a_file_of_pytorch_is_refused_with_what_to_do);
+  tcase_add_test(cases, a_seed_that_verdict_json_would_round_is_refused);
   return suite_run("refusals", cases, 120);
 }

@@ -18,6 +18,8 @@
 
 enum { MOST_MODELS = 16 };
 
+static const uint64_t MOST_SEED = UINT64_C(1) << 53; // verdict.json keeps it as a number: a double when read
+
 typedef struct Options {
   const char *models[MOST_MODELS];
   int model_count;
@@ -53,6 +55,10 @@ static Status choose_seed(const Options *options, const Record *before, uint64_t
   uint32_t drawn;
   const double kept = record_find_number(before, "seed");
   *seed = options->seed;
+  if (options->has_seed && options->seed > MOST_SEED)
+    return status_fail(STATUS_USAGE,
+                       "--seed %llu: verdict.json keeps seeds up to %llu exactly; give a smaller one",
+                       (unsigned long long)options->seed, (unsigned long long)MOST_SEED);
   if (before && options->has_seed && kept != (double)*seed)
     return status_fail(STATUS_USAGE, "--seed %llu: the folder has the seed %.0f; give another folder by -o",
                        (unsigned long long)*seed, kept);
