@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "contact/surface/smooth_points.h"
+#include "fem/model/laws.h"
 
 static const char *const reasons[] = {
     [FEM_COMPLIANCE_SCENE] = "given by the scene",
@@ -37,6 +38,7 @@ void app_stiffness_describe(const FemModel *model, const FemCompliance *choice, 
   if (range[1] > range[0]) text_append(text, size, &used, " … %.3g", range[1]);
   text_append(text, size, &used, " %s", contact_def_potential_unit(contact->potential));
   if (contact->potential != CONTACT_POTENTIAL_FIELD) return;
+  if (fem_laws_are_wanted(contact)) text_append(text, size, &used, ", of friction and of linear pairs");
   for (int reason = 0; reason < REASONS; reason++)
     add_reason(model, choice, (FemComplianceBound)reason, text, size, &used);
 }

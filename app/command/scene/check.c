@@ -208,7 +208,7 @@ static void print_laws(const FemContactDef *contact) {
   char text[EXPRESSION_MAX_TEXT + 64];
   if (!fem_laws_are_wanted(contact)) return;
   contact_law_describe(&contact->law.law, text, sizeof text);
-  printf("              pressure law %s; the stiffness is that of friction and of linear pairs\n", text);
+  printf("              pressure law %s\n", text);
   for (int i = 0; i < contact->pair_count; i++) {
     const FemContactPairDef *pair = &contact->pairs[i];
     if (pair->law.law.kind == CONTACT_LAW_LINEAR) continue;
