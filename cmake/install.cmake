@@ -7,7 +7,8 @@ set(data ${CMAKE_INSTALL_DATADIR}/tetlap)
 
 install(TARGETS tetlap RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS tetlap-overlap EXPORT tetlap-overlap LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(FILES include/tetlap/overlap.h include/tetlap/model.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tetlap)
+install(TARGETS tetlap-run LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(FILES include/tetlap/overlap.h include/tetlap/model.h include/tetlap/run.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tetlap)
 
 # Data, under the names of the source tree.
 install(DIRECTORY net/weights DESTINATION ${data}/net)

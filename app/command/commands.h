@@ -44,6 +44,7 @@ extern const AppCommand app_command_gradient;
 extern const AppCommand app_command_mesh; // exit code 65: the mesh cannot be used
 extern const AppCommand app_command_resume;
 extern const AppCommand app_command_run;
+extern const AppCommand app_command_serve; // for tetlap.Simulation
 extern const AppCommand app_command_stress;
 extern const AppCommand app_command_sweep;
 

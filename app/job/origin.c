@@ -70,6 +70,10 @@ Status app_origin_read(const Record *origin, const char *path, AppJobOptions *op
   options->scene_path = record_find_text(origin, "scene_file");
   *overlap = record_find_text(origin, "overlap");
   const Record *overrides = record_find(origin, "set");
+  if (record_find(origin, "replay"))
+    return status_fail(STATUS_INPUT,
+                       "%s: is of a run with --replay %s, which cannot be taken up: start it again", path,
+                       record_find_text(origin, "replay"));
   if (!options->scene_path || !overrides || record_count(overrides) > APP_MAX_OVERRIDES)
     return status_fail(STATUS_INPUT, "%s: does not say which scene it belongs to", path);
   for (int i = 0; i < record_count(overrides); i++) {

@@ -204,9 +204,13 @@ const char *record_find_text(const Record *record, const char *key) {
   return json_string_value((const json_t *)record_find(record, key));
 }
 
-double record_find_number(const Record *record, const char *key) {
-  const json_t *value = (const json_t *)record_find(record, key);
+double record_number_value(const Record *number) {
+  const json_t *value = (const json_t *)number;
   return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+double record_find_number(const Record *record, const char *key) {
+  return record_number_value(record_find(record, key));
 }
 
 static void print_value(const json_t *value, char text[RECORD_VALUE]) {

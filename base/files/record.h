@@ -64,6 +64,7 @@ const Record *record_find(const Record *record, const char *key);
 const Record *record_at(const Record *list, int index);
 int record_count(const Record *list);                                // elements of a list; 0: not a list
 const char *record_text_value(const Record *text);                   // NULL: it is no text
+double record_number_value(const Record *number);                    // NaN: it is no number
 const char *record_find_text(const Record *record, const char *key); // NULL: no text there
 double record_find_number(const Record *record, const char *key);    // NaN: no number there
 // The first place where two records differ, as "scene.contact.stiffness", and its values there, cut to what

@@ -96,6 +96,20 @@ static void sum_term(void *self, const Term *term) {
                     vec3_scale(-term->resistance * term->rate, vec3_at(term->along + 3 * v)));
 }
 
+typedef struct MomentSink {
+  const double *positions;
+  double (*moments)[3];
+} MomentSink;
+
+static void turn_term(void *self, const Term *term) {
+  const MomentSink *to = self;
+  for (int v = 0; v < 4; v++) {
+    Vec3 x = vec3_at(to->positions + 3 * (size_t)term->vertices[v]);
+    Vec3 force = vec3_scale(-term->resistance * term->rate, vec3_at(term->along + 3 * v));
+    vec3_accumulate(to->moments[term->interface], vec3_cross(x, force));
+  }
+}
+
 typedef struct TermSink {
   const ContactStiffnessSink *sink;
   double damping_scale;
@@ -121,6 +135,11 @@ void contact_viscosity_add_force(const ContactViscosity *viscosity, ContactVisco
 void contact_viscosity_add_resultants(const ContactViscosity *viscosity, ContactViscosityMotion motion,
                                       double (*resultants)[3]) {
   walk_terms(viscosity, motion, resultants, sum_term);
+}
+
+void contact_viscosity_add_moments(const ContactViscosity *viscosity, ContactViscosityMotion motion,
+                                   double (*moments)[3]) {
+  walk_terms(viscosity, motion, &(MomentSink){motion.evaluation->positions, moments}, turn_term);
 }
 
 void contact_viscosity_add_damping(const ContactViscosity *viscosity, ContactViscosityMotion motion,

@@ -38,6 +38,10 @@ void contact_viscosity_add_force(const ContactViscosity *viscosity, ContactVisco
 void contact_viscosity_add_resultants(const ContactViscosity *viscosity, ContactViscosityMotion motion,
                                       double (*resultants)[3]);
 
+// Adds to `moments` [N m] those of the same forces about the origin.
+void contact_viscosity_add_moments(const ContactViscosity *viscosity, ContactViscosityMotion motion,
+                                   double (*moments)[3]);
+
 // Adds −∂f/∂v times `scale`, which is exact and never negative. ∂f/∂x is left out: it is not symmetric, or
 // small.
 void contact_viscosity_add_damping(const ContactViscosity *viscosity, ContactViscosityMotion motion,

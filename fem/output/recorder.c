@@ -12,10 +12,9 @@
 #include "base/ranks.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
-#include "fem/effect/elements/plasticity.h"
-#include "fem/effect/elements/volume_effect.h"
 #include "fem/output/columns.h"
 #include "fem/output/reactions.h"
+#include "fem/output/stress.h"
 #include "fem/output/vtk/pvd.h"
 #include "fem/output/vtk/vtu.h"
 
@@ -278,47 +277,24 @@ void fem_recorder_accept_step(FemRecorder *recorder) {
   fem_ledger_accept(&recorder->ledger);
 }
 
-static double von_mises(const double s[6]) {
-  double normal =
-      (s[0] - s[1]) * (s[0] - s[1]) + (s[1] - s[2]) * (s[1] - s[2]) + (s[2] - s[0]) * (s[2] - s[0]);
-  return sqrt(0.5 * normal + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
-}
-
 static void fill_displacement(void *self, size_t first, size_t count, double *values) {
   const FemRecorder *recorder = self;
   for (size_t i = 3 * first; i < 3 * (first + count); i++)
     *values++ = recorder->state->positions[i] - recorder->system->model->rest[i];
 }
 
-// Of an element; 0 of an obstacle's.
-static void find_stress(const FemRecorder *recorder, int e, double stress[6]) {
-  const FemSystem *system = recorder->system;
-  const FemModel *model = system->model;
-  const FemState *state = recorder->state;
-  const FemModelBody *body = &model->bodies[model->tet_body[e]];
-  for (int s = 0; s < 6; s++) stress[s] = 0;
-  if (body->is_obstacle) return;
-  fem_model_stress(model, e, state->positions, stress);
-  void *volume = body->element == FEM_ELEMENT_NODAL ? fem_system_effect(system, &fem_effect_volume) : NULL;
-  if (volume) {
-    double corners[12];
-    for (int k = 0; k < 4; k++)
-      memcpy(corners + 3 * k, state->positions + 3 * (size_t)model->tets[e][k], 3 * sizeof *corners);
-    fem_effect_volume_add_stress(volume, e, corners, stress);
-  }
-  void *plasticity = fem_system_effect(system, &fem_effect_plasticity);
-  if (plasticity) fem_effect_plasticity_add_stress(plasticity, e, state, stress);
-}
-
 static void fill_stress(void *self, size_t first, size_t count, double *values) {
-  for (size_t i = 0; i < count; i++) find_stress(self, (int)(first + i), values + 6 * i);
+  const FemRecorder *recorder = self;
+  for (size_t i = 0; i < count; i++)
+    fem_stress_find(recorder->system, recorder->state, (int)(first + i), values + 6 * i);
 }
 
 static void fill_von_mises(void *self, size_t first, size_t count, double *values) {
+  const FemRecorder *recorder = self;
   for (size_t i = 0; i < count; i++) {
     double stress[6];
-    find_stress(self, (int)(first + i), stress);
-    values[i] = von_mises(stress);
+    fem_stress_find(recorder->system, recorder->state, (int)(first + i), stress);
+    values[i] = fem_stress_von_mises(stress);
   }
 }
 

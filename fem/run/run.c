@@ -21,6 +21,7 @@
 #include "fem/run/run_clock.h"
 #include "fem/run/run_frames.h"
 #include "fem/run/run_load.h"
+#include "fem/run/run_loop.h"
 #include "fem/run/run_stage.h"
 #include "fem/run/run_step.h"
 #include "fem/run/run_watch.h"
@@ -34,10 +35,11 @@ static Status look_ahead(FemRunState *run, double *time, FemMeasures *measures) 
   FemForesight foresight = {.displacement = fem_model_position_tolerance(run->model),
                             .velocity = fem_model_velocity_tolerance(run->model),
                             .resolution = FEM_TIME_RESOLUTION * scene->end};
-  double farthest = fmin(run->time + longest, run->stage_end);
+  const double latest = fmin(run->stage_end, run->target);
+  double farthest = fmin(run->time + longest, latest);
   farthest = fem_system_horizon(&run->system, &foresight, run->time, farthest);
   for (double step = farthest - run->time;; step *= FEM_CUT) {
-    *time = step < run->stage_end - run->time ? run->time + step : run->stage_end;
+    *time = step < latest - run->time ? run->time + step : latest;
     fem_system_scatter(&run->system, *time, run->u, run->v, &run->trial);
     Status status = fem_run_frames_measure(run, measures);
     if (status != STATUS_RETRY || step < FEM_TIME_RESOLUTION * scene->end) return status;
@@ -172,7 +174,7 @@ static Status begin_part(FemRunState *run) {
   TRY(release(run));
   fem_restart_load(from, &run->system.numbering, run->u, run->v);
   TRY(begin_rest(run));
-  if (is_first) TRY(fem_run_frames_open(run));
+  if (!run->recorder.system) TRY(fem_run_frames_open(run));
   return run->model->scene->is_static ? begin_statics(run) : begin_motion(run);
 }
 
@@ -193,8 +195,7 @@ static void end_part(FemRunState *run) {
   run->inside_began_s = inside;
 }
 
-// Collects a checkpoint and begins anew from it.
-static Status pass_checkpoint(FemRunState *run) {
+Status fem_run_loop_begin_anew(FemRunState *run) {
   const double force_scale = run->statics.force_scale, driven_work = run->statics.driven_work;
   end_part(run);
   TRY(fem_run_checkpoint_take(run, force_scale, driven_work));
@@ -212,24 +213,14 @@ static Status equilibrate(FemRunState *run) {
   return STATUS_OK;
 }
 
-static Status march(FemRunState *run) {
-  TRY(allocate_states(run));
-  FemRunSpan span = fem_run_clock_begin(run);
-  TRY(begin_part(run));
-  fem_run_clock_end(run, span, &run->result->cost.phases.start);
-  const FemSceneDef *scene = run->model->scene;
-  run->stall = fem_stall_begin(run->time, scene->end, scene->end / scene->frames);
-  TRY(fem_run_checkpoint_offer(run));
-  while (!fem_run_state_has_ended(run)) {
-    if (run->model->scene->is_static) {
-      TRY(equilibrate(run));
-    } else {
-      if (run->time >= run->stage_end) TRY(fem_run_stage_change(run));
-      TRY(run->integrator ? fem_run_step_advance(run) : sleep_on(run));
-    }
-    if (fem_run_checkpoint_is_due(run)) TRY(pass_checkpoint(run));
+Status fem_run_loop_turn(FemRunState *run) {
+  if (run->model->scene->is_static) {
+    TRY(equilibrate(run));
+  } else {
+    if (run->time >= run->stage_end) TRY(fem_run_stage_change(run));
+    TRY(run->integrator ? fem_run_step_advance(run) : sleep_on(run));
   }
-  return fem_run_watch_passages(run);
+  return fem_run_checkpoint_is_due(run) ? fem_run_loop_begin_anew(run) : STATUS_OK;
 }
 
 static Status keep_account(FemRunState *run) {
@@ -309,6 +300,48 @@ static Status prepare(FemRunState *run) {
   return begin_result(run);
 }
 
+static void begin_stall(FemRunState *run) {
+  const FemSceneDef *scene = run->model->scene;
+  run->stall = fem_stall_begin(run->time, scene->end, scene->end / scene->frames);
+}
+
+Status fem_run_loop_begin(FemRunState *run, const FemModel *model, const FemRunOptions *options,
+                          FemRunResult *result) {
+  *result = (FemRunResult){.min_det_F = INFINITY};
+  *run = (FemRunState){.model = model,
+                       .options = options,
+                       .result = result,
+                       .target = INFINITY,
+                       .began_s = clock_wall_s(),
+                       .cpu_began_s = clock_cpu_s(),
+                       .inside_began_s = ranks()->stats()->inside_s};
+  run->written_s = run->began_s;
+  TRY(prepare(run));
+  TRY(allocate_states(run));
+  FemRunSpan span = fem_run_clock_begin(run);
+  TRY(begin_part(run));
+  fem_run_clock_end(run, span, &run->result->cost.phases.start);
+  begin_stall(run);
+  return fem_run_checkpoint_offer(run);
+}
+
+Status fem_run_loop_restore(FemRunState *run, const FemCheckpoint *from) {
+  FemCheckpoint copy;
+  TRY(fem_restart_check(from, run->model));
+  TRY(fem_checkpoint_copy(&copy, from));
+  end_part(run);
+  fem_rest_destroy(run->rest);
+  run->rest = NULL;
+  fem_recorder_destroy(&run->recorder);
+  fem_checkpoint_destroy(&run->checkpoint);
+  run->checkpoint = copy;
+  fem_run_result_destroy(run->result);
+  TRY(begin_result(run));
+  TRY(begin_part(run));
+  begin_stall(run);
+  return STATUS_OK;
+}
+
 // The first failure gives the status; what closes the run may fail as well.
 static Status close_run(FemRunState *run, Status status) {
   char message[2048], closing[1024] = "";
@@ -327,8 +360,7 @@ static Status close_run(FemRunState *run, Status status) {
   return collected ? collected : left;
 }
 
-// Says when a run failed, unless whoever failed did. A retry that nobody took is the solver's failure.
-static Status say_when(const FemRunState *run, Status status) {
+Status fem_run_loop_explain(const FemRunState *run, Status status) {
   if (status == STATUS_INTERRUPTED) TRY(fem_run_watch_stop(run));
   if (status != STATUS_RETRY && status != STATUS_SOLVER) return status;
   bool is_told = strstr(status_message(), "t = ");
@@ -336,16 +368,14 @@ static Status say_when(const FemRunState *run, Status status) {
   return status_prefix(STATUS_SOLVER, "at t = %.9g s", run->time);
 }
 
+Status fem_run_loop_end(FemRunState *run, Status status) {
+  if (!status && fem_run_state_has_ended(run)) status = fem_run_watch_passages(run);
+  return close_run(run, status);
+}
+
 Status fem_run(const FemModel *model, const FemRunOptions *options, FemRunResult *result) {
-  *result = (FemRunResult){.min_det_F = INFINITY};
-  FemRunState run = {.model = model,
-                     .options = options,
-                     .result = result,
-                     .began_s = clock_wall_s(),
-                     .cpu_began_s = clock_cpu_s(),
-                     .inside_began_s = ranks()->stats()->inside_s};
-  run.written_s = run.began_s;
-  Status status = prepare(&run);
-  if (!status) status = march(&run);
-  return close_run(&run, say_when(&run, status));
+  FemRunState run;
+  Status status = fem_run_loop_begin(&run, model, options, result);
+  while (!status && !fem_run_state_has_ended(&run)) status = fem_run_loop_turn(&run);
+  return fem_run_loop_end(&run, fem_run_loop_explain(&run, status));
 }

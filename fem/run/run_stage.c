@@ -35,6 +35,7 @@ Status fem_run_stage_begin(FemRunState *run, double step) {
                           .stall = &run->stall};
   const FemSolverOps *solver = fem_solver_ops(fem_run_choice(model, &run->system.numbering).kind);
   TRY(fem_integrator_create(&run->integrator, &run->system, &run->trial, solver, &def));
+  fem_integrator_aim(run->integrator, run->target);
   return fem_integrator_restart(run->integrator, run->time, run->u, run->v, step);
 }
 

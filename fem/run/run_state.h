@@ -41,6 +41,7 @@ typedef struct FemRunState {
   double next_step;         // to be tried; 0: the integrator's choice [s]
   FemStall stall;           // over all stages
   double stage_end;         // the next release of vertices, change for what sleeps, or the end [s]
+  double target;            // a step ends there at the latest; INFINITY: anywhere [s]
   FemCheckpoint checkpoint; // where this part began
   bool is_written;          // is that in the file
   int interval;             // frames between two checkpoints; 0: none

@@ -2,7 +2,9 @@
 #include "fem/scene/drive.h"
 
 #include <stddef.h>
+#include <string.h>
 
+#include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/scene/table.h"
 
@@ -142,8 +144,20 @@ double fem_drive_horizon(const FemConstraintDef *def, double arm, const FemFores
   return ends_turning ? fmin(horizon, def->until) : horizon;
 }
 
+Status fem_drive_set(FemConstraintDef *def, double time, double end, const double displacement[3]) {
+  double from[4] = {time}, rate[3];
+  if (def->table_count > 0) fem_table_eval(table_of(def), time, from + 1, rate);
+  if (!def->table) def->table = memory_zeroed(2 * sizeof from / sizeof *from, sizeof *from);
+  if (!def->table) return status_no_memory("a motion");
+  memcpy(def->table, from, sizeof from);
+  def->table[4] = end;
+  memcpy(def->table + 5, displacement, 3 * sizeof *displacement);
+  def->table_count = 2;
+  return STATUS_OK;
+}
+
 bool fem_drive_is_still(const FemConstraintDef *def) {
-  bool moves = def->spin != 0 || def->turns || def->table_count > 0;
+  bool moves = def->is_external || def->spin != 0 || def->turns || def->table_count > 0;
   for (int c = 0; c < 3; c++)
     moves = moves || def->velocity[c] != 0 || def->amplitude[c] != 0 || def->formula[c] != NULL;
   return !moves;

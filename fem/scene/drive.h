@@ -22,6 +22,10 @@ double fem_drive_next_change(const FemConstraintDef *def, double time);
 double fem_drive_horizon(const FemConstraintDef *def, double arm, const FemForesight *foresight, double time,
                          double farthest);
 
+// Of an external motion: from where it is at `time` it goes to the displacement [m], straight on, until `end`
+// > `time` [s], and stays there. STATUS_MEMORY.
+Status fem_drive_set(FemConstraintDef *def, double time, double end, const double displacement[3]);
+
 // Whether nothing ever moves.
 bool fem_drive_is_still(const FemConstraintDef *def);
 

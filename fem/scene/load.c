@@ -214,6 +214,8 @@ static Status keep_forces(FemLoad *load, const Builder *builder, int vertex_begi
   load->vertices = memory_zeroed(count, sizeof *load->vertices);
   load->force = memory_zeroed(3 * count, sizeof *load->force);
   if (!load->vertices || !load->force) return status_no_memory("a load");
+  if (builder->def->kind == FEM_LOAD_EXTERNAL && !(load->from = memory_zeroed(3 * count, sizeof *load->from)))
+    return status_no_memory("a load");
   load->vertex_count = builder->selected_count;
   for (size_t i = 0; i < count; i++) {
     load->vertices[i] = vertex_begin + builder->selected[i];
@@ -263,6 +265,8 @@ static Status build(FemLoad *load, Builder *builder, int vertex_begin) {
     TRY(select_triangles(builder));
     share_over_triangles(builder);
     break;
+  case FEM_LOAD_EXTERNAL:
+    break;
   }
   return keep_forces(load, builder, vertex_begin);
 }
@@ -280,6 +284,7 @@ void fem_load_destroy(FemLoad *load) {
   memory_free(load->vertices);
   memory_free(load->force);
   memory_free(load->weight);
+  memory_free(load->from);
   memory_free(load->triangles);
   memory_free(load->faces);
   *load = (FemLoad){0};
@@ -303,7 +308,28 @@ Status fem_load_factor(const FemLoadDef *def, double time, double *factor) {
                      def->factor ? def->factor->text : "table", time);
 }
 
+// Of an external load at the present factor.
+static Vec3 external_force(const FemLoad *load, double factor, int i) {
+  Vec3 from = vec3_at(load->from + 3 * (size_t)i), to = vec3_at(load->force + 3 * (size_t)i);
+  return factor == 1 ? to : vec3_add(from, vec3_scale(factor, vec3_sub(to, from)));
+}
+
+Status fem_load_set(FemLoad *load, FemLoadDef *def, double time, double end, const double *force) {
+  const double factor = factor_at(def, time).value;
+  if (!def->table) def->table = memory_zeroed(4, sizeof *def->table);
+  if (!def->table) return status_no_memory("a load");
+  for (int i = 0; i < load->vertex_count; i++)
+    vec3_store(load->from + 3 * (size_t)i, external_force(load, factor, i));
+  memcpy(load->force, force, 3 * (size_t)load->vertex_count * sizeof *force);
+  const double rows[4] = {time, end > time ? 0 : 1, end, 1};
+  memcpy(def->table, rows, sizeof rows);
+  def->table_count = end > time ? 2 : 1;
+  return STATUS_OK;
+}
+
 double fem_load_next_change(const FemLoadDef *def, double time) {
+  bool has_jumped = def->kind == FEM_LOAD_EXTERNAL && def->table_count == 1 && time <= def->table[0];
+  if (has_jumped) return time;
   if (def->factor && !expression_is_constant(def->factor)) return time;
   return fem_table_next_change(table_of(def), time);
 }
@@ -346,7 +372,8 @@ void fem_load_add_force(const FemLoad *load, double factor, const double *positi
   }
   for (int i = 0; i < load->vertex_count; i++)
     vec3_accumulate(force + 3 * (size_t)load->vertices[i],
-                    vec3_scale(factor, vec3_at(load->force + 3 * (size_t)i)));
+                    load->from ? external_force(load, factor, i)
+                               : vec3_scale(factor, vec3_at(load->force + 3 * (size_t)i)));
   for (int i = 0; i < load->triangle_count; i++) {
     Vec3 third = vec3_scale(-factor * load->def->pressure / 3, area_of(positions, load->triangles[i]));
     for (int k = 0; k < 3; k++) vec3_accumulate(force + 3 * (size_t)load->triangles[i][k], third);

@@ -18,6 +18,7 @@ typedef struct FemLoad {
   double *force;         // on each at factor 1 [N]                                   (vertex_count, 3)
   double *weight;        // in place of `force`, of a torque [m³]                     (vertex_count)
   int vertex_count;
+  double *from;        // of an external load: at factor 0 [N]; else NULL                (vertex_count, 3)
   int (*triangles)[3]; // of the model, outward, that carry a following pressure      (triangle_count)
   int triangle_count;
   int (*faces)[6]; // the same of quadratic tetrahedra (fem/element/quadratic_face.h)         (face_count)
@@ -31,6 +32,10 @@ void fem_load_destroy(FemLoad *load); // also of a zeroed one
 
 // What the load's values are multiplied with at a time. STATUS_INPUT: not a number.
 Status fem_load_factor(const FemLoadDef *def, double time, double *factor);
+
+// Of an external load, and its `def`: from what it is at `time` it becomes these forces [N] (vertex_count,
+// 3), straight on until `end` [s]; at once where that is `time`. STATUS_MEMORY.
+Status fem_load_set(FemLoad *load, FemLoadDef *def, double time, double end, const double *force);
 
 // From a time on, when the load begins to change: that time itself if it is changing, INFINITY if never
 // again.

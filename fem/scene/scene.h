@@ -61,6 +61,7 @@ typedef struct FemConstraintDef {
   int table_count;
   Expression *formula[3]; // displacement [m] of t [s], owned; NULL: none
   double until;           // [s]; INFINITY: for ever
+  bool is_external;       // the table is filled while the run goes on (fem_drive_set)
   double release;         // [s]; 0: never
 } FemConstraintDef;
 
@@ -71,6 +72,7 @@ typedef enum FemLoadKind {
   FEM_LOAD_TRACTION,   // by rest area of the surface triangles whose corners are all selected [N/m²]
   FEM_LOAD_PRESSURE,   // on the same triangles, against their outward normal [Pa]
   FEM_LOAD_TORQUE,     // moment of the selected vertices, without a resultant [N m]
+  FEM_LOAD_EXTERNAL,   // nodal forces that are set while the run goes on (fem_load_set) [N]
 } FemLoadKind;
 
 typedef struct FemLoadDef {

@@ -43,6 +43,7 @@ struct FemIntegrator {
   double time;                // of y
   bool is_started, has_steps; // there was a restart; a step since then
   double strictness;          // share of the tolerances of velocities that counts
+  double target;              // nor any step until the caller sets another one [s]
   double stop;                // which the next step does not pass [s]
   bool stops_at_knot;         // that is why
   bool is_at_knot;            // the last step ended there
@@ -209,6 +210,7 @@ Status fem_integrator_create(FemIntegrator **integrator, FemSystem *system, FemS
   (*integrator)->state = state;
   (*integrator)->def = *def;
   (*integrator)->strictness = 1;
+  (*integrator)->target = INFINITY;
   (*integrator)->own_stall = fem_stall_begin(0, def->end, def->end);
   Status status = create(*integrator, solver);
   if (status == STATUS_OK) return STATUS_OK;
@@ -234,6 +236,10 @@ void fem_integrator_destroy(FemIntegrator *integrator) {
 
 double fem_integrator_shortest_step(const FemIntegrator *integrator) {
   return integrator->min_step;
+}
+
+void fem_integrator_aim(FemIntegrator *integrator, double target) {
+  integrator->target = target;
 }
 
 void fem_integrator_tighten(FemIntegrator *integrator, double share) {
@@ -465,9 +471,10 @@ static void limit_step(FemIntegrator *integrator, double begin, double planned, 
 // The next step ends at def.end at the latest, or just before the knot that what is prescribed has to be
 // followed to.
 static Status choose_stop(FemIntegrator *integrator) {
-  double begin = integrator->time, end = integrator->def.end, step = integrator->max_step;
+  double begin = integrator->time, end = fmin(integrator->def.end, integrator->target),
+         step = integrator->max_step;
   if (integrator->has_steps) IDAGetCurrentStep(integrator->ida, &step);
-  double least = fmax(integrator->min_step, FEM_TIME_RESOLUTION * end);
+  double least = fmax(integrator->min_step, FEM_TIME_RESOLUTION * integrator->def.end);
   FemForesight foresight = {.displacement = integrator->def.displacement_tolerance,
                             .velocity = integrator->def.velocity_tolerance,
                             .resolution = least};

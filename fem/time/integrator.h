@@ -55,6 +55,10 @@ Status fem_integrator_restart(FemIntegrator *integrator, double time, const doub
 // The shortest step that it takes [s].
 double fem_integrator_shortest_step(const FemIntegrator *integrator);
 
+// No step passes that time [s], until another is set; INFINITY: any may. Where a step would end near it, two
+// equal ones lead there.
+void fem_integrator_aim(FemIntegrator *integrator, double target);
+
 // From the next step on velocities may err by this share of their tolerances, at most 1.
 void fem_integrator_tighten(FemIntegrator *integrator, double share);
 

@@ -8,6 +8,7 @@
     run, read                   a scene run by the program; what it wrote, as arrays
     load_pairs, evaluate        labelled pairs as arrays; how well a model, yours too, answers them
     compare                     one scene with several models, yours too
+    Simulation                  a run that Python steps, reads, pushes on, branches
     poses                       overlap volume and wrench of many rigid poses of a body
 """
 
@@ -18,10 +19,12 @@ from ._pairs import evaluate, load_pairs
 from ._poses import Poses, poses
 from ._results import Frame, Frames, Run, read
 from ._run import run
+from ._simulation import Body, Contact, Drive, Loads, Simulation, State
 from ._volumes import Flag, MeshPairs, Overlap, mesh_overlap, mesh_pairs, overlap
 
-__all__ = ["Compared", "Error", "Flag", "Frame", "Frames", "MeshPairs", "Model", "Overlap", "Poses", "Run", "RunError", "compare", "evaluate", "load_pairs",
-           "mesh_overlap", "mesh_pairs", "models", "overlap", "poses", "read", "run"]
+__all__ = ["Body", "Compared", "Contact", "Drive", "Error", "Flag", "Frame", "Frames", "Loads", "MeshPairs", "Model", "Overlap", "Poses", "Run",
+           "RunError", "Simulation", "State", "compare", "evaluate", "load_pairs", "mesh_overlap", "mesh_pairs", "models", "overlap", "poses",
+           "read", "run"]
 
 
 def __getattr__(name):

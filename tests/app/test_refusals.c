@@ -137,7 +137,8 @@ START_TEST(a_seed_that_verdict_json_would_round_is_refused) {
 END_TEST
 
 START_TEST(a_model_that_no_list_can_name_is_refused) {
-  ck_assert_refused(64, "$tetlap verdict clip,geo --quick -o out", "name several models as words of their own");
+  ck_assert_refused(64, "$tetlap verdict clip,geo --quick -o out",
+                    "name several models as words of their own");
   ck_assert_int_ne(access("out", F_OK), 0);
 }
 END_TEST

@@ -11,6 +11,7 @@
 #include "app/job/closing.h"
 #include "app/job/folder.h"
 #include "app/job/origin.h"
+#include "app/loop/replay.h"
 #include "base/clock.h"
 #include "base/files/file.h"
 #include "base/log.h"
@@ -26,6 +27,8 @@ static const AppOption option_table[] = {
      CLI_TO(AppRunOptions, overlap)},
     {"capture", 0, "FILE", "Keep the pairs of every step whose boxes meet, labelled, as a data set", 1,
      CLI_TEXT, CLI_TO(AppRunOptions, capture)},
+    {"replay", 0, "FILE", "Set from outside what tetlap.Simulation's record says", 1, CLI_TEXT,
+     CLI_TO(AppRunOptions, replay)},
     {"strict", 0, NULL,
      "Energy gained beyond 0.1 % of the scene's, and bodies that pass through each other, are an error", 1,
      CLI_FLAG, CLI_TO(AppRunOptions, is_strict)},
@@ -95,7 +98,7 @@ static Status observe(void *self, const FemRunProgress *progress) {
 }
 
 // Runs, and puts the capture into its place, if only of a run that was cut short.
-static Status run_captured(const AppRunOptions *options, const AppJob *job, const char *origin,
+static Status run_captured(const AppRunOptions *options, AppJob *job, const char *origin,
                            FemRunResult *result) {
   DatagenCapture capture = {0};
   Status begun = options->capture ? datagen_capture_begin(&capture, options->capture, app_versions_program(),
@@ -116,7 +119,8 @@ static Status run_captured(const AppRunOptions *options, const AppJob *job, cons
                                .from = options->from,
                                .origin = origin,
                                .is_strict = options->is_strict};
-  Status status = fem_run(&job->model, &run_options, result);
+  Status status = options->replay ? app_loop_replay(job, &run_options, result, options->replay)
+                                  : fem_run(&job->model, &run_options, result);
   log_progress_end();
   app_beacon_end(&observer.beacon);
   if (status) log_error("%s", status_message());
@@ -144,6 +148,7 @@ static void tell_of_checkpoint(const AppJob *job) {
 static Status make_origin(const AppRunOptions *options, const AppJob *job, char **text) {
   Record *origin;
   TRY(app_origin_make(job, &options->job, options->overlap, &origin));
+  if (options->replay) record_text(origin, "replay", options->replay);
   Status status =
       options->origin ? app_origin_compare(options->origin, origin, options->from_path) : STATUS_OK;
   *text = status ? NULL : record_text_of(origin);
@@ -151,7 +156,7 @@ static Status make_origin(const AppRunOptions *options, const AppJob *job, char 
   return status || *text ? status : status_no_memory("the run's origin");
 }
 
-static Status run_opened(const AppRunOptions *options, const AppJob *job, const char *origin) {
+static Status run_opened(const AppRunOptions *options, AppJob *job, const char *origin) {
   announce(job);
   FemRunResult result = {0};
   int missing = app_job_folder_missing(job->directory);
@@ -183,11 +188,15 @@ Status app_run_execute(const AppRunOptions *options) {
   return status;
 }
 
-static Status check_capture(const AppRunOptions *options) {
+static Status check_options(const AppRunOptions *options) {
   if (options->capture && file_is_same(options->capture, options->job.scene_path))
     return status_fail(STATUS_USAGE,
                        "--capture %s is the scene itself; name another file, as in --capture pairs.h5",
                        options->capture);
+  if (options->replay && ranks()->count > 1)
+    return status_fail(STATUS_USAGE,
+                       "--replay works in one process, and there are %d: leave it out, or --ranks",
+                       ranks()->count);
   if (!options->capture || ranks()->count == 1) return STATUS_OK;
   return status_fail(STATUS_USAGE,
                      "--capture writes from one process, and there are %d: leave it out, or --ranks",
@@ -199,7 +208,7 @@ static int run_command(int argument_count, char **arguments) {
   app_cli_parse(&app_command_run, argument_count, arguments, &options);
   app_job_prepare(&options.job);
   Status status = app_ranks_start(options.rank_count);
-  if (!status) status = check_capture(&options);
+  if (!status) status = check_options(&options);
   if (status)
     log_error("%s", status_message());
   else

@@ -9,6 +9,7 @@
 typedef struct AppRunOptions {
   AppJobOptions job;
   const char *overlap, *capture; // NULL: the scene's; none
+  const char *replay;            // what is set from outside (app/loop/replay.h); NULL: nothing
   bool is_strict;
   int rank_count;                   // --ranks; 0: not said
   const struct FemCheckpoint *from; // to go on from; NULL: from the start

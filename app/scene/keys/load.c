@@ -5,9 +5,9 @@
 #include "fem/scene/scene.h"
 
 static const SceneKey load_keys[] = {
-    {"force", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "body_force traction pressure torque",
-     .unit = "N", MARK(FemLoadDef, kind, FEM_LOAD_FORCE),
-     .help = "total, distributed evenly over the selected vertices"},
+    {"force", SCENE_VECTOR, AT(FemLoadDef, vector),
+     .excludes = "body_force traction pressure torque external", .unit = "N",
+     MARK(FemLoadDef, kind, FEM_LOAD_FORCE), .help = "total, distributed evenly over the selected vertices"},
     {"body_force", SCENE_VECTOR, AT(FemLoadDef, vector), .excludes = "force traction pressure torque",
      .unit = "N/m³", MARK(FemLoadDef, kind, FEM_LOAD_BODY_FORCE),
      .help = "on the volume (at rest) around the selected vertices"},
@@ -21,12 +21,15 @@ static const SceneKey load_keys[] = {
      .unit = "N m", MARK(FemLoadDef, kind, FEM_LOAD_TORQUE),
      .help = "moment about the centroid of the selected vertices, without a resultant; its direction stays, "
              "and its forces turn with the vertices"},
+    {"external", SCENE_TRUE, .excludes = "force body_force traction pressure torque factor table",
+     MARK(FemLoadDef, kind, FEM_LOAD_EXTERNAL),
+     .help = "nodal forces that whoever steps the run sets (docs/python.md); zero until then"},
     {"follows", SCENE_CHOICE, AT(FemLoadDef, is_dead), .fallback = "surface",
      .choices = &app_scene_choices_followings, .needs = "pressure", .help = "what a pressure acts on"},
-    {"factor", SCENE_FORMULA, AT(FemLoadDef, factor), .absent_help = "1", .excludes = "table",
+    {"factor", SCENE_FORMULA, AT(FemLoadDef, factor), .absent_help = "1", .excludes = "table external",
      .help = "the load is this function of t [s] times the value above"},
     {"table", SCENE_PROFILE, AT(FemLoadDef, table), .count_offset = offsetof(FemLoadDef, table_count),
-     .absent_help = "1", .excludes = "factor",
+     .absent_help = "1", .excludes = "factor external",
      .help = "or rows [t, factor], linear between them, constant before and after"},
     {0},
 };
@@ -35,5 +38,5 @@ const SceneSection app_scene_keys_load = {.help = "an external load",
                                           .keys = load_keys,
                                           .more = &app_scene_keys_select,
                                           .one_of = "box halfspace radius normal group all",
-                                          .some_of = "force body_force traction pressure torque",
+                                          .some_of = "force body_force traction pressure torque external",
                                           PLACE(FemLoadDef, select.place)};

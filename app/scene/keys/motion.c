@@ -66,18 +66,19 @@ static const SceneSection turn = {
 
 static const SceneKey motion_keys[] = {
     {"velocity", SCENE_VECTOR, AT(FemConstraintDef, velocity), .unit = "m/s", .fallback = "[0, 0, 0]",
-     .excludes = "table", .help = "constant velocity"},
+     .excludes = "table external", .help = "constant velocity"},
     {"amplitude", SCENE_VECTOR, AT(FemConstraintDef, amplitude), .unit = "m", .fallback = "[0, 0, 0]",
-     .needs = "frequency", .excludes = "table", .help = "of an oscillation amplitude · sin(2π frequency t)"},
+     .needs = "frequency", .excludes = "table external",
+     .help = "of an oscillation amplitude · sin(2π frequency t)"},
     {"frequency", SCENE_NUMBER, AT(FemConstraintDef, frequency), .unit = "Hz", .range = "(0, inf)",
-     .needs = "amplitude", .excludes = "table", .help = "of the oscillation"},
+     .needs = "amplitude", .excludes = "table external", .help = "of the oscillation"},
     {"table", SCENE_ROWS, AT(FemConstraintDef, table), .unit = "s, m",
-     .count_offset = offsetof(FemConstraintDef, table_count),
+     .count_offset = offsetof(FemConstraintDef, table_count), .excludes = "external",
      .help = "rows [t, dx, dy, dz] of time and displacement, linear between them"},
-    {"formula", SCENE_SECTION, .section = &formula, .excludes = "table",
+    {"formula", SCENE_SECTION, .section = &formula, .excludes = "table external",
      .help = "displacements by formulas, added to velocity and amplitude"},
     {"spin", SCENE_NUMBER, AT(FemConstraintDef, spin), .unit = "rad/s", .fallback = "0", .needs = "axis",
-     .excludes = "turn", .help = "angular velocity about an axis"},
+     .excludes = "turn external", .help = "angular velocity about an axis"},
     {"axis", SCENE_DIRECTION, AT(FemConstraintDef, axis), .needs = "spin", .excludes = "turn",
      .help = "of the spin"},
     {"centre", SCENE_VECTOR, AT(FemConstraintDef, centre), .unit = "m", .fallback = "[0, 0, 0]",
@@ -86,19 +87,23 @@ static const SceneKey motion_keys[] = {
      .help = "or a turn by a formula or a table"},
     {"order", SCENE_CHOICE, AT(FemConstraintDef, moves_first), .fallback = "turn_first",
      .choices = &app_scene_choices_orders_of_motion, .help = "of a turn or spin and a displacement"},
+    {"external", SCENE_TRUE, MARK(FemConstraintDef, is_external, true),
+     .excludes = "velocity amplitude frequency table formula spin turn until",
+     .help = "a displacement that whoever steps the run sets (docs/python.md); zero until then"},
     {"until", SCENE_NUMBER, AT(FemConstraintDef, until), .unit = "s", .range = "(0, inf]", .fallback = ".inf",
-     .help = "when the motion stops; the position is then held"},
+     .excludes = "external", .help = "when the motion stops; the position is then held"},
     {0},
 };
 const SceneSection app_scene_keys_motion = {.help = "a prescribed motion, from t = 0",
                                             .keys = motion_keys,
-                                            .some_of = "velocity amplitude table formula spin turn"};
+                                            .some_of = "velocity amplitude table formula spin turn external"};
 
 const SceneSection app_scene_keys_motion_driven = {.help = "vertices with prescribed motion",
                                                    .size = sizeof(FemConstraintDef),
                                                    .keys = motion_keys,
                                                    .more = &prescribed_more,
                                                    .one_of = "box halfspace radius normal group all",
-                                                   .some_of = "velocity amplitude table formula spin turn",
+                                                   .some_of =
+                                                       "velocity amplitude table formula spin turn external",
                                                    .finish = finish_driven,
                                                    PLACE(FemConstraintDef, select.place)};

@@ -102,3 +102,11 @@ Status fem_effect_viscosity_add(const void *effect, const FemState *state, doubl
   if (interfaces) contact_viscosity_add_resultants(&viscosity->law, motion, interfaces);
   return STATUS_OK;
 }
+
+Status fem_effect_viscosity_add_moments(const void *effect, const FemState *state, double (*moments)[3]) {
+  const Viscosity *viscosity = effect;
+  ContactViscosityMotion motion;
+  TRY(find_motion(viscosity, state, &motion));
+  contact_viscosity_add_moments(&viscosity->law, motion, moments);
+  return STATUS_OK;
+}

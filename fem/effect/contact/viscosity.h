@@ -10,5 +10,7 @@
 // NULL: not wanted.
 Status fem_effect_viscosity_add(const void *effect, const FemState *state, double (*interfaces)[3],
                                 double *vertices);
+// Adds their moments about the origin [N m] (interface_count, 3).
+Status fem_effect_viscosity_add_moments(const void *effect, const FemState *state, double (*moments)[3]);
 
 #endif

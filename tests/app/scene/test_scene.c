@@ -72,7 +72,7 @@ static void check_constraints(const FemBodyDef *body) {
   ck_assert(body->fixed[1].components[0] && !body->fixed[1].components[1] && body->fixed[1].components[2]);
   ck_assert_double_eq(body->fixed[0].release, 0);
   ck_assert_double_eq(body->fixed[1].release, 1.5);
-  ck_assert_int_eq(body->driven_count, 5);
+  ck_assert_int_eq(body->driven_count, 6);
   const FemConstraintDef *driven = body->driven;
   ck_assert_int_eq(driven[0].select.kind, FEM_SELECT_GROUP);
   ck_assert_str_eq(driven[0].select.group, "top");
@@ -100,11 +100,12 @@ static void check_constraints(const FemBodyDef *body) {
   ck_assert_int_eq(driven[3].angle_count, 2);
   ck_assert_double_eq(driven[3].angles[3], 1.5);
   ck_assert_double_eq(expression_eval(driven[4].angle, 3).value, 1.5);
+  ck_assert(driven[5].is_external && !driven[4].is_external);
 }
 
 static void check_loads(const FemBodyDef *body) {
   const FemLoadDef *loads = body->loads;
-  ck_assert_int_eq(body->load_count, 6);
+  ck_assert_int_eq(body->load_count, 7);
   ck_assert_int_eq(loads[0].kind, FEM_LOAD_PRESSURE);
   ck_assert_str_eq(loads[0].select.group, "top");
   ck_assert_double_eq(loads[0].pressure, 5e4);
@@ -121,6 +122,7 @@ static void check_loads(const FemBodyDef *body) {
   ck_assert_double_eq(expression_eval(loads[4].factor, 9).value, 0.5);
   ck_assert_int_eq(loads[5].kind, FEM_LOAD_TORQUE);
   ck_vector(loads[5].vector, 0, 7, 0);
+  ck_assert_int_eq(loads[6].kind, FEM_LOAD_EXTERNAL);
 }
 
 static void check_upper(const FemBodyDef *body) {
@@ -257,7 +259,7 @@ START_TEST(a_scene_with_every_key_is_read) {
   ck_assert_ok(app_scene_read(full_yaml, NULL, 0, &scene));
   check_full(&scene);
   ck_assert_str_eq(scene.path, full_yaml);
-  ck_assert_int_eq(scene.bodies[1].place.line, 29);
+  ck_assert_int_eq(scene.bodies[1].place.line, 31);
   ck_assert_int_eq(scene.bodies[0].driven[1].select.place.line, 18);
   ck_assert_int_eq(scene.bodies[0].driven[1].select.place.column, 9);
   fem_scene_destroy(&scene);

@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A run that Python steps."""
+
+import gc
+import os
+import signal
+import tempfile
+import threading
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import tetlap
+
+SCENE = Path(os.environ["TETLAP_SOURCE_DIR"], "tests", "scenes", "hand.yaml")
+
+
+def opened(**arguments):
+    return tetlap.Simulation(SCENE, threads=1, **arguments)
+
+
+def press(sim, until):
+    """Presses the plate down and pulls the block aside, in steps of .01 s."""
+    while sim.time < until:
+        sim.drive["plate"] = [0, 0, -0.05 * (sim.time + 0.01)]
+        sim.loads["block"] = [0.5, 0, 0]
+        sim.advance(0.01)
+
+
+class Stepping(unittest.TestCase):
+    def test_views_show_the_present_and_cannot_be_written(self):
+        with opened() as sim:
+            block = sim.bodies["block"]
+            points, before = block.points, block.points.copy()
+            self.assertEqual(points.shape, (64, 3))
+            sim.advance(0.02)
+            self.assertIs(block.points, points)
+            self.assertLess((points - before)[:, 2].mean(), 0)
+            self.assertLess(block.velocities[:, 2].min(), 0)
+            self.assertFalse(points.flags.owndata or points.flags.writeable)
+            self.assertEqual(block.tets.max(), 63)
+            self.assertAlmostEqual(block.mass, 1, 12)
+
+    def test_forces_are_those_of_the_vertices_and_opposite_on_the_other(self):
+        with opened() as sim:
+            press(sim, 0.12)
+            floor, plate = sim.contacts["block", "floor"], sim.contacts["plate", "block"]
+            self.assertTrue(floor.touches and plate.touches)
+            np.testing.assert_array_equal(plate.force, -sim.contacts["block", "plate"].force)
+            total = floor.force - plate.force
+            np.testing.assert_allclose(sim.bodies["block"].forces.sum(axis=0), total, atol=1e-9 * np.abs(total).max())
+            self.assertGreater(sim.bodies["block"].pressure.max(), 0)
+            self.assertGreaterEqual(floor.slip, 0)
+            self.assertGreater(sim.bodies["block"].von_mises.max(), 100)
+
+    def test_the_end_is_reached_by_sums_of_steps(self):
+        with opened() as sim:
+            steps = 0
+            while sim.time < sim.end:
+                sim.advance(sim.end / 30)
+                steps += 1
+            self.assertEqual((sim.time, steps), (sim.end, 30))
+
+    def test_states_go_on_to_the_same_bits_here_and_in_a_fork(self):
+        with opened() as sim:
+            press(sim, 0.1)
+            state = sim.state()
+            with sim.fork() as other:
+                sim.advance(0.03)
+                first = sim.bodies["block"].points.copy()
+                sim.restore(state)
+                self.assertEqual(sim.time, state.time)
+                sim.advance(0.03)
+                np.testing.assert_array_equal(sim.bodies["block"].points, first)
+                other.advance(0.03)
+                self.assertEqual(other.time, sim.time)
+        del state
+        gc.collect()
+
+    def test_a_state_of_a_file_is_of_its_scene(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "state.h5")
+            with opened() as sim:
+                sim.advance(0.05)
+                sim.state().write(path)
+                sim.advance(0.05)
+                points = sim.bodies["block"].points.copy()
+            with opened() as sim:
+                sim.restore(sim.read_state(path))
+                sim.advance(0.05)
+                np.testing.assert_array_equal(sim.bodies["block"].points, points)
+            with opened(set={"contact.friction.coefficient": 0.1}) as sim, self.assertRaisesRegex(ValueError, "the scene has changed"):
+                sim.read_state(path)
+
+    def test_callbacks_see_every_step_and_may_end_the_advance(self):
+        with opened() as sim:
+            times, events = [], []
+            sim.on_step(lambda it: times.append((it.time, it.bodies["block"].stress.shape)))
+            sim.on_contact(lambda _, contact, begins: events.append((contact.a, contact.b, begins)))
+            sim.advance(0.05)
+            self.assertGreater(len(times), 3)
+            self.assertTrue(all(a < b for a, b in zip(times, times[1:])))
+            self.assertEqual(events[0], ("block", "floor", True))
+            reached = sim.advance(until=sim.end, stop=lambda it: it.contacts["block", "floor"].force[2] > 12)
+            self.assertGreater(sim.contacts["block", "floor"].force[2], 12)
+            self.assertLess(reached, sim.end)
+            self.assertEqual(times[-1][0], reached)
+
+    def test_scenes_may_be_dicts_and_static(self):
+        scene = {"bodies": [{"name": "bar", "mesh": {"box": {"size": [0.1, 0.1, 0.5], "cells": [1, 1, 5]}},
+                             "material": {"young": 1e6, "poisson": 0, "density": 1000},
+                             "fixed": [{"box": {"min": [-1, -1, -1], "max": [1, 1, 1e-9]}}],
+                             "loads": [{"box": {"min": [-1, -1, 0.5 - 1e-9], "max": [1, 1, 1]}, "external": True}]}],
+                 "time": {"end": 1, "static": True}}
+        with tetlap.Simulation(scene) as sim:
+            for k in 1, 2:
+                sim.loads["bar"] = [0, 0, 10.0 * k]
+                sim.advance(0.25)
+                stretch = sim.bodies["bar"].points[:, 2].max() - 0.5
+                # F L / (E A), but for the last row, whose corners do not share F as an even traction would
+                self.assertAlmostEqual(stretch / (0.5 * 10 * k / (1e6 * 0.01)), 1, 1)
+            centres = sim.bodies["bar"].points[sim.bodies["bar"].tets].mean(axis=1)[:, 2]
+            middle = sim.bodies["bar"].stress[(centres > 0.2) & (centres < 0.3), 2]
+            self.assertAlmostEqual(middle.mean() / (20 / 0.01), 1, 2)
+
+    def test_a_models_own_function_answers(self):
+        pairs = []
+
+        def volume(x):
+            pairs.append(len(x))
+            result = tetlap.overlap(x, "clip", order=1)
+            return {"volume": result.volume, "gradient": result.gradient}
+
+        two = {"bodies": [{"name": name, "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": 1}}, "place": {"translate": [0.01 * z, 0, z]},
+                           "material": {"young": 1e5, "poisson": 0.3, "density": 1000}} for name, z in (("low", 0), ("high", 0.099))],
+               "contact": {}, "time": {"end": 0.01}}
+        with tetlap.Simulation(two, overlap=volume) as sim:
+            sim.advance(0.001)
+            self.assertGreater(sim.contacts["high", "low"].force[2], 0)
+            self.assertGreater(sum(pairs), 0)
+            with self.assertRaisesRegex(tetlap.Error, "cannot fork"):
+                sim.fork()
+
+
+class Refusals(unittest.TestCase):
+    def test_names_that_are_not_there_are_told_with_those_that_are(self):
+        with opened() as sim:
+            for call, words in ((lambda: sim.bodies["ball"], "'block'"), (lambda: sim.contacts["block", "ball"], "'block', 'floor'"),
+                                (lambda: sim.drive.set("block", [0, 0, 0]), "'plate'"), (lambda: sim.loads.set("plate", [0, 0, 0]), "'block'")):
+                with self.assertRaisesRegex(KeyError, words):
+                    call()
+
+    def test_values_that_make_no_sense_leave_the_run_as_it_was(self):
+        with opened() as sim:
+            sim.advance(0.01)
+            for call, words in ((lambda: sim.drive.set("plate", [0, 0]), r"shape \(2,\); expected \(3,\)"),
+                                (lambda: sim.drive.set("plate", [0, 0, np.nan]), "value 2 is nan"),
+                                (lambda: sim.loads.set("block", np.zeros((3, 2))), r"expected \(3,\) or \(6,\) or \(64, 3\)"),
+                                (lambda: sim.drive.set("plate", [0, 0, 0], ramp=0), "cannot jump"),
+                                (lambda: sim.advance(until=0.001), "cannot go back"), (lambda: sim.advance(-0.001), "cannot go back"),
+                                (lambda: sim.advance(10), "ends at t = 0.2 s"), (lambda: sim.advance(until=np.nan), "cannot go back")):
+                with self.assertRaisesRegex(ValueError, words):
+                    call()
+            for call in (lambda: sim.advance(), lambda: sim.advance(0.1, until=1), lambda: sim.drive.set("plate", "up"), lambda: sim.restore(3)):
+                with self.assertRaises(TypeError):
+                    call()
+            sim.advance(0.01)
+            self.assertAlmostEqual(sim.time, 0.02, 12)
+
+    def test_a_scene_that_is_wrong_is_told_by_the_program(self):
+        with self.assertRaisesRegex(tetlap.RunError, "no_such.yaml"):
+            tetlap.Simulation("no_such.yaml")
+        with self.assertRaisesRegex(tetlap.RunError, "yuong"):
+            tetlap.Simulation({"bodies": [{"name": "a", "mesh": "a.msh", "material": {"yuong": 1}}]})
+
+    def test_closed_foreign_and_lost_ones_are_told(self):
+        with opened() as sim, opened() as other:
+            with self.assertRaisesRegex(ValueError, "another Simulation"):
+                sim.restore(other.state())
+            other._channel._process.kill()
+            with self.assertRaisesRegex(tetlap.RunError, "killed by signal 9"):
+                other.advance(0.01)
+        for closed in sim, other:
+            with self.assertRaisesRegex(tetlap.Error, "closed"):
+                closed.advance(0.01)
+
+    def test_a_fork_of_the_interpreter_may_not_use_it(self):
+        with opened() as sim:
+            child = os.fork()
+            if child == 0:
+                try:
+                    sim.advance(0.001)
+                except tetlap.Error as error:
+                    os._exit(7 if "fork of the interpreter" in str(error) else 8)
+                os._exit(9)
+            self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 7)
+            sim.advance(0.001)
+
+    def test_one_thread_at_a_time(self):
+        with opened() as sim:
+            seen = []
+
+            def meddle(it):
+                thread = threading.Thread(target=lambda: seen.append(self.catch(lambda: it.advance(0.001))))
+                thread.start()
+                thread.join()
+                seen.append(self.catch(lambda: it.advance(0.001)))
+                return True
+
+            sim.on_step(meddle)
+            sim.advance(0.01)
+            self.assertEqual(len(seen), 2)
+            self.assertTrue(all("one at a time" in str(error) for error in seen))
+
+    def catch(self, call):
+        try:
+            call()
+        except tetlap.Error as error:
+            return error
+        return None
+
+    def test_what_a_callback_raises_comes_out_and_ends_the_program(self):
+        sim = opened()
+        sim.on_step(lambda _: 1 / 0)
+        with self.assertRaises(ZeroDivisionError):
+            sim.advance(0.01)
+        self.assertIsNotNone(sim._channel._process.poll())
+
+    def test_ctrl_c_ends_the_program(self):
+        sim = opened()
+        process = sim._channel._process
+        sim.on_step(lambda _: os.kill(os.getpid(), signal.SIGINT) or time.sleep(0.1))
+        with self.assertRaises(KeyboardInterrupt):
+            sim.advance(0.1)
+        self.assertIsNotNone(process.wait(10))
+
+
+if __name__ == "__main__":
+    unittest.main()
