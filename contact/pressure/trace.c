@@ -25,6 +25,7 @@ static void add_sample(const Sample *sample, double lambda, Vec3 vertex, Contact
   const double values[CONTACT_TRACE_VALUES] = {sample->pressure, sample->depth},
                squares[6] = {r.x * r.x, r.y * r.y, r.z * r.z, r.x * r.y, r.y * r.z, r.x * r.z};
   trace->weight += w;
+  trace->squares += w * w;
   trace->pressed += lambda * vec3_length(sample->force);
   vec3_accumulate(trace->force, vec3_scale(lambda, sample->force));
   vec3_accumulate(trace->rub, vec3_scale(lambda, sample->pull));
@@ -36,9 +37,10 @@ static void add_sample(const Sample *sample, double lambda, Vec3 vertex, Contact
   }
 }
 
-// Whether the line through x along a direction meets a cell: λ + t μ ≥ 0 for all four somewhere.
-static bool meets_cell(const ContactLayout *layout, const double *positions, int cell, Vec3 x,
-                       Vec3 direction) {
+// How far before x, against a direction, a cell begins; 0: x is within it or has passed it; INFINITY: the
+// line through x misses it. Where it is in the cell, λ + t μ ≥ 0 for all four.
+static double gap_to_cell(const ContactLayout *layout, const double *positions, int cell, Vec3 x,
+                          Vec3 direction) {
   Vec3 c[4], e[3], across[3];
   double lambda[4], mu[4], least = -INFINITY, most = INFINITY;
   for (int v = 0; v < 4; v++) c[v] = vec3_at(positions + 3 * (size_t)layout->mesh.cells[cell][v]);
@@ -55,21 +57,23 @@ static bool meets_cell(const ContactLayout *layout, const double *positions, int
     double at = -(lambda[v] + NOTHING) / mu[v];
     if (mu[v] > 0) least = fmax(least, at);
     if (mu[v] < 0) most = fmin(most, at);
-    if (mu[v] == 0 && !(lambda[v] >= -NOTHING)) return false;
+    if (mu[v] == 0 && !(lambda[v] >= -NOTHING)) return INFINITY;
   }
-  return least <= most;
+  return least <= most ? fmax(0, -most) : INFINITY;
 }
 
-// Whether a vertex has what the pair has on the other side before it, or behind, along the force on it.
-static bool faces_other(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, int side,
-                        Vec3 x, Vec3 force) {
+// How far a vertex at x is from what the pair has on the other side, against the force on it; 0: touched or
+// passed; INFINITY: beside it.
+static double gap_to_other(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, int side,
+                           Vec3 x, Vec3 force) {
   const ContactPair *pair = &evaluation->pairs[k];
   Vec3 inward = vec3_scale(1 / vec3_length(force), force);
   int other = pair->cells[1 - side];
-  if (other >= 0) return meets_cell(layout, evaluation->positions, other, x, inward);
+  if (other >= 0) return gap_to_cell(layout, evaluation->positions, other, x, inward);
   const ContactShape *shape = &layout->def.shapes[layout->interfaces[pair->interface].shape];
   double size = cbrt(contact_layout_tet_volume(layout, pair->cells[side]));
-  return contact_shape_gap(shape, evaluation->time, vec3_sub(x, vec3_scale(size, inward))) <= 0;
+  if (contact_shape_gap(shape, evaluation->time, vec3_sub(x, vec3_scale(size, inward))) > 0) return INFINITY;
+  return fmax(0, contact_shape_gap(shape, evaluation->time, x));
 }
 
 static int carrier_count(const ContactStars *stars, int vertex) {
@@ -126,9 +130,12 @@ static void face_side(const ContactLayout *layout, const ContactStars *stars,
     if (layout->mesh.depths[vertices[v]] > 0 || carrier_count(stars, vertices[v]) != 1) continue;
     int given = carrier(stars, vertices[v], 0, &weight);
     ContactTrace *trace = &traces[given];
-    if (!trace->is_faced && trace->pressed > 0)
-      trace->is_faced =
-          faces_other(layout, evaluation, k, side, place_of(stars, evaluation, given), vec3_at(trace->force));
+    if (!(trace->pressed > 0) || (trace->is_faced && trace->gap == 0)) continue;
+    Vec3 x = place_of(stars, evaluation, given);
+    double gap = gap_to_other(layout, evaluation, k, side, x, vec3_at(trace->force));
+    if (gap == INFINITY) continue;
+    trace->gap = trace->is_faced ? fmin(trace->gap, gap) : gap;
+    trace->is_faced = true;
   }
 }
 
@@ -189,8 +196,14 @@ static Plane find_plane(const ContactTrace *trace, Vec3 normal) {
                  .spread = {fmax(0, middle + half), fmax(0, middle - half)}};
 }
 
+// Whether a fit has no more samples than numbers, which says nothing of their scatter.
+static bool has_few(const ContactTrace *trace) {
+  return !(trace->weight * trace->weight > 3 * trace->squares);
+}
+
 static double value_at(const ContactTrace *trace, const Plane *plane, int value) {
   double mean = trace->values[value] / trace->weight, at = mean;
+  if (has_few(trace)) return mean;
   for (int k = 0; k < 2; k++) {
     double together = vec3_dot(vec3_at(trace->moments[value]), plane->axes[k]) / trace->weight -
                       mean * plane->mean[k],
@@ -205,6 +218,7 @@ static void find(const ContactTrace *trace, double *pressure, double *depth, dou
   for (int c = 0; c < 3; c++) traction[c] = 0;
   double length = vec3_length(vec3_at(trace->force));
   if (!(trace->is_faced && trace->weight > 0 && length > 0)) return;
+  if (trace->gap * trace->weight > trace->values[CONTACT_TRACE_DEPTH]) return; // beyond the rim
   Vec3 towards = vec3_scale(1 / length, vec3_at(trace->force));
   Plane plane = find_plane(trace, towards);
   *pressure = value_at(trace, &plane, CONTACT_TRACE_PRESSURE);

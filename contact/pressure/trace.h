@@ -8,10 +8,12 @@
 //
 //   r = x̄ − x_a,   m = Σ w r / Σ w,   C = Σ w r rᵀ / Σ w − m mᵀ,   p_a = p̄ − g·m,   C g = Σ w p r / Σ w − p̄ m
 //
-// Along a direction in which the samples hardly spread, against their distance, g is taken back to 0. So p is
-// exact up to the edge of a punch, where the mean would be, and up to a rim where it falls to 0, where the
-// mean is far too large. A vertex that no cell of its pairs lies before or behind, along their forces, is
-// beyond the edge of the other body: 0.
+// Of three samples, counted by their weights as (Σ w)² / Σ w², or fewer the mean p̄ is told: a fit of three
+// numbers would follow their scatter. Along a direction in which the samples hardly spread, against their
+// distance, g is taken back to 0. So p is exact up to the edge of a punch, where the mean would be, and up to
+// a rim where it falls to 0, where the mean is far too large. A vertex that no cell of its pairs lies before
+// or behind, along their forces, is beyond the edge of the other body, and one that is farther outside of
+// that body than its samples are deep is beyond the rim: 0.
 #ifndef TETLAP_CONTACT_TRACE_H
 #define TETLAP_CONTACT_TRACE_H
 
@@ -23,6 +25,7 @@ enum { CONTACT_TRACE_PRESSURE, CONTACT_TRACE_DEPTH, CONTACT_TRACE_VALUES };
 // Sums over the samples round a vertex as it was given, on its own body.
 typedef struct ContactTrace {
   double weight;                           // Σ w [m²]
+  double squares;                          // Σ w² [m⁴]
   double pressed;                          // Σ λ |F| [N]
   double force[3];                         // Σ λ F [N]
   double rub[3];                           // Σ λ T, T the friction of a pair [N]
@@ -31,6 +34,7 @@ typedef struct ContactTrace {
   double values[CONTACT_TRACE_VALUES];     // Σ w p [N], Σ w D [m³]
   double moments[CONTACT_TRACE_VALUES][3]; // Σ w p r, Σ w D r
   bool is_faced;                           // another body lies before or behind the vertex, along the force
+  double gap;                              // how far before it at least, if so; 0: touched or passed [m]
 } ContactTrace;
 
 // What follows for the given vertices; 0 where nothing presses and inside of bodies.

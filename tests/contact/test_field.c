@@ -327,6 +327,35 @@ START_TEST(the_pressure_is_told_up_to_where_it_ends) {
 }
 END_TEST
 
+// Under a ball of radius R that is `deep` deep: c (deep − r²/2R) up to r = 2, nothing beyond the cells that
+// end there. Its middle is within the face, or at its corner, as where a quarter is computed.
+START_TEST(the_pressure_under_a_ball_ends_at_its_rim) {
+  const double x0 = _i ? -4 : 0.13, y0 = _i ? -4 : 0.07, deep = 0.05, radius = 2 / deep, cell = 0.5;
+  Scene scene = {.system = NULL, .shape_count = 1};
+  double p[MOST_VERTICES], d[MOST_VERTICES];
+  scene.shape = (ContactShape){
+      .name = "ball", .kind = CONTACT_SHAPE_BALL, .point = {x0, y0, radius - deep}, .radius = radius};
+  blocks_add(&scene.blocks,
+             &(BlockDef){.corner = {-4, -4, -2}, .cell = {cell, cell, 1}, .cells = {16, 16, 2}});
+  start(&scene, "clip", true);
+  ck_assert_int_le(scene.blocks.vertex_count, MOST_VERTICES);
+  ck_assert_ok(contact_system_trace(scene.system, evaluated_at(scene.system, 0, scene.blocks.x), NULL,
+                                    &(ContactTraceResult){.pressures = p, .depths = d}));
+  int pressed = 0;
+  for (int v = 0; v < scene.blocks.vertex_count; v++) {
+    const double *x = scene.blocks.x + 3 * v;
+    if (x[2] != 0) continue;
+    double r = hypot(x[0] - x0, x[1] - y0), exact = STIFFNESS * fmax(0, deep - r * r / (2 * radius));
+    double most = r < 2 - cell ? 0.1 : 0.3; // of the largest; a cell's own curve is cell²/R: .06 of it
+    ck_assert_msg(fabs(p[v] - exact) <= most * STIFFNESS * deep, "r = %g: %g, not %g", r, p[v], exact);
+    if (r > 2 + 0.5 * cell) ck_assert_double_eq(p[v], 0);
+    pressed += p[v] > 0;
+  }
+  ck_assert_int_gt(pressed, 10);
+  destroy(&scene);
+}
+END_TEST
+
 START_TEST(sliding_past_faces_that_coincide_costs_nothing) {
   Scene scene = {.system = NULL};
   blocks_add(&scene.blocks, &(BlockDef){.corner = {-4, -4, -2}, .cell = {1, 1, 1}, .cells = {8, 8, 2}});
@@ -495,6 +524,7 @@ int main(void) {
   tcase_add_test(tests, traces_tell_pressure_and_depth_at_the_surface);
   tcase_add_test(tests, the_pressure_is_told_up_to_the_edge_of_a_punch);
   tcase_add_test(tests, the_pressure_is_told_up_to_where_it_ends);
+  tcase_add_loop_test(tests, the_pressure_under_a_ball_ends_at_its_rim, 0, 2);
   tcase_add_test(tests, sliding_past_faces_that_coincide_costs_nothing);
   tcase_add_loop_test(tests, a_tilted_face_begins_with_no_leap, 0, 5);
   tcase_add_loop_test(tests, what_is_wholly_inside_is_pushed_out, 0, 4);
