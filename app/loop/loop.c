@@ -126,7 +126,15 @@ void app_loop_close(AppLoop *loop) {
   *loop = (AppLoop){0};
 }
 
-Status app_loop_advance(AppLoop *loop, double until) {
+// What differs from the scene's end by no more than the rounding of a million steps' sum is the end.
+static double snap(const AppLoop *loop, double until) {
+  static const double ROUNDING = 1e-9;
+  const double end = loop->job.scene.end;
+  return fabs(until - end) <= ROUNDING * end ? end : until;
+}
+
+Status app_loop_advance(AppLoop *loop, double wanted) {
+  const double until = snap(loop, wanted);
   bool has_changed = false;
   TRY(fem_run_session_check(loop->session, until));
   if (until > app_loop_time(loop))

@@ -50,13 +50,14 @@ static Status settle(Adjoint *adjoint, double time, double *left) {
   FemEquilibrium *equilibrium = &adjoint->equilibrium;
   TRY(fem_equilibrium_forces(equilibrium, time, adjoint->u, adjoint->force));
   *left = fem_equilibrium_largest(adjoint->force, adjoint->count);
-  for (int k = 0; k<MAX_CORRECTIONS && * left> 0; k++) {
+  for (int k = 0; k < MAX_CORRECTIONS; k++) {
+    if (!(*left > 0)) break;
     TRY(fem_equilibrium_factorise(equilibrium, time, adjoint->u, 0));
     TRY(fem_equilibrium_solve(equilibrium, adjoint->force, adjoint->step));
     for (int i = 0; i < adjoint->count; i++) adjoint->u[i] += adjoint->step[i];
     TRY(fem_equilibrium_forces(equilibrium, time, adjoint->u, adjoint->force));
     double now = fem_equilibrium_largest(adjoint->force, adjoint->count);
-    if (now > *left)
+    if (!(now <= *left)) // nor if it is no number
       for (int i = 0; i < adjoint->count; i++) adjoint->u[i] -= adjoint->step[i];
     bool has_fallen = now <= LEAST_FALL * *left;
     *left = fmin(*left, now);

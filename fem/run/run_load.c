@@ -37,8 +37,9 @@ Status fem_run_load_advance(FemRunState *run) {
   FemForesight foresight = {.displacement = fem_model_position_tolerance(run->model),
                             .resolution = SHORTEST_LOAD_STEP * scene->end / scene->frames,
                             .static_share = scene->tolerance};
-  double target = fem_scene_frame_time(scene, run->next_frame), to = fmin(run->time + step, fmin(target, run->target)),
-         from = run->time, work_before = run->statics.driven_work;
+  double target = fem_scene_frame_time(scene, run->next_frame),
+         to = fmin(run->time + step, fmin(target, run->target)), from = run->time,
+         work_before = run->statics.driven_work;
   to = fem_system_horizon(&run->system, &foresight, run->time, to);
   Status status = fem_statics_step(&run->statics, run->time, to, run->u);
   if (status == STATUS_RETRY) {
