@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// libtetlap-run as a program of somebody else has it: by tetlap/run.h alone.
+#include <tetlap/run.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "suite.h"
+
+#define HAND TETLAP_SOURCE_DIR "/tests/scenes/hand.yaml"
+
+static TetlapRun *open_hand(const TetlapRunOptions *options) {
+  TetlapRun *run;
+  ck_assert_msg(tetlap_run_open(&run, HAND, options) == 0, "%s", tetlap_run_message());
+  return run;
+}
+
+// Presses the plate down by 5 cm/s and pulls the block aside.
+static void press(TetlapRun *run, double until) {
+  const double force[3] = {0.5, 0, 0};
+  ck_assert_int_eq(tetlap_run_load(run, "block", force, 3, 0.01), 0);
+  while (tetlap_run_time(run) < until) {
+    const double down[3] = {0, 0, -0.05 * (tetlap_run_time(run) + 0.01)};
+    ck_assert_int_eq(tetlap_run_drive(run, "plate", down, TETLAP_RUN_NEXT_ADVANCE), 0);
+    ck_assert_int_eq(tetlap_run_advance(run, fmin(until, tetlap_run_time(run) + 0.01)), 0);
+  }
+}
+
+START_TEST(a_run_is_pressed_read_and_taken_back) {
+  TetlapRun *run = open_hand(NULL);
+  TetlapRunBody body = TETLAP_RUN_BODY_INIT;
+  TetlapRunContact plate = TETLAP_RUN_CONTACT_INIT, same = TETLAP_RUN_CONTACT_INIT;
+  TetlapRunState *state;
+  const double *forces, *pressure;
+  ck_assert_int_eq(tetlap_run_body_count(run), 1);
+  ck_assert_int_eq(tetlap_run_body(run, 0, &body), 0);
+  ck_assert_str_eq(body.name, "block");
+  ck_assert_int_eq(body.vertex_end - body.vertex_begin, tetlap_run_vertex_count(run));
+  press(run, 0.12);
+  ck_assert_int_eq(tetlap_run_contact(run, "block", "plate", &plate), 0);
+  ck_assert_int_eq(tetlap_run_contact(run, "plate", "block", &same), 0);
+  ck_assert_double_lt(plate.force[2], -1); // on the block, downwards
+  for (int c = 0; c < 3; c++) ck_assert_double_eq(plate.force[c], -same.force[c]);
+  ck_assert_int_eq(tetlap_run_forces(run, &forces, &pressure), 0);
+  double highest = 0;
+  for (int v = 0; v < tetlap_run_vertex_count(run); v++) highest = fmax(highest, pressure[v]);
+  ck_assert_double_gt(highest, 0);
+  double *stress = calloc(6 * (size_t)tetlap_run_tet_count(run), sizeof *stress);
+  ck_assert_int_eq(tetlap_run_stress(run, stress), 0);
+  ck_assert_double_lt(stress[2], 0); // it is squeezed along z
+  free(stress);
+
+  ck_assert_int_eq(tetlap_run_keep(run, &state), 0);
+  ck_assert_int_eq(tetlap_run_advance(run, 0.14), 0);
+  const double first = tetlap_run_points(run)[0];
+  ck_assert_int_eq(tetlap_run_restore(run, state), 0);
+  ck_assert_int_eq(tetlap_run_advance(run, 0.14), 0);
+  ck_assert_double_eq(tetlap_run_points(run)[0], first);
+  tetlap_run_state_free(state);
+  tetlap_run_close(run);
+}
+END_TEST
+
+static int stop_after(void *user, TetlapRun *run) {
+  ck_assert_double_ge(tetlap_run_time(run), 0);
+  return ++*(int *)user == 3;
+}
+
+START_TEST(a_callback_ends_the_advance) {
+  int steps = 0;
+  TetlapRunOptions options = TETLAP_RUN_OPTIONS_INIT;
+  options.on_step = stop_after, options.user = &steps;
+  TetlapRun *run = open_hand(&options);
+  ck_assert_int_eq(tetlap_run_advance(run, 0.2), 0);
+  ck_assert_int_eq(steps, 3);
+  ck_assert_double_lt(tetlap_run_time(run), 0.2);
+  tetlap_run_close(run);
+}
+END_TEST
+
+#define ck_assert_refused(call, words)                                                                       \
+  do {                                                                                                       \
+    ck_assert_int_ne(call, 0);                                                                               \
+    ck_assert_msg(strstr(tetlap_run_message(), words) != NULL, "%s", tetlap_run_message());                  \
+  } while (0)
+
+START_TEST(what_makes_no_sense_is_refused_with_a_message) {
+  const double up[3] = {0, 0, 1}, none[3] = {0, 0, NAN};
+  TetlapRunContact contact = TETLAP_RUN_CONTACT_INIT;
+  TetlapRunBody small = {.size = 1};
+  TetlapRun *run;
+  ck_assert_refused(tetlap_run_open(&run, "/no/such.yaml", NULL), "/no/such.yaml");
+  ck_assert_ptr_null(run);
+  run = open_hand(NULL);
+  ck_assert_refused(tetlap_run_drive(run, "blok", up, 0.1), "'plate'");
+  ck_assert_refused(tetlap_run_drive(run, "plate", none, 0.1), "must be a number");
+  ck_assert_refused(tetlap_run_load(run, "block", up, 2, 0), "not 2");
+  ck_assert_refused(tetlap_run_contact(run, "block", "wall", &contact), "'wall'");
+  ck_assert_refused(tetlap_run_body(run, 0, &small), "_INIT");
+  ck_assert_int_eq(tetlap_run_advance(run, 0.01), 0);
+  ck_assert_refused(tetlap_run_advance(run, 0.005), "cannot go back");
+  tetlap_run_close(run);
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("run");
+  tcase_add_test(cases, a_run_is_pressed_read_and_taken_back);
+  tcase_add_test(cases, a_callback_ends_the_advance);
+  tcase_add_test(cases, what_makes_no_sense_is_refused_with_a_message);
+  return suite_run("run", cases, 120);
+}
