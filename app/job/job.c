@@ -17,6 +17,7 @@
 #include "base/clock.h"
 #include "base/cpu.h"
 #include "base/files/file.h"
+#include "base/interrupt.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "fem/model/build.h"
@@ -24,11 +25,9 @@
 #include "overlap/model.h"
 #include "overlap/weights.h"
 
-static volatile sig_atomic_t stop_flag;
-
 static void raise_flag(int signal_number) {
   (void)signal_number;
-  stop_flag = 1;
+  *interrupt_flag() = 1;
 }
 
 static void read_progress(struct argp_state *state, void *is_json, char *text) {
@@ -67,7 +66,7 @@ void app_job_prepare(const AppJobOptions *options) {
 }
 
 const volatile sig_atomic_t *app_job_stop_flag(void) {
-  return &stop_flag;
+  return interrupt_flag();
 }
 
 char *app_job_default_directory(const char *scene_path, const char *ending) {

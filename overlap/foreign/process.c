@@ -22,11 +22,13 @@
 #include <unistd.h>
 
 #include "base/files/data.h"
+#include "base/interrupt.h"
 #include "base/memory.h"
 
 enum { HELLO = 1, EVALUATE = 2, VERSION = 1, WORDS = 4, PAIR_BYTES = 432, LEAST_CAPACITY = 1024 };
 enum { SOCKET_FOR_IT = 3, MEMORY_FOR_IT = 4 };
-static const double SECONDS_TO_END = 2; // once its socket is closed, and to answer after a signal
+static const double SECONDS_BETWEEN_LOOKS = 0.1; // whether somebody wants the program to end
+static const double SECONDS_TO_END = 2;          // once its socket is closed, and to answer after a signal
 
 typedef struct Process {
   char *name;          // for messages
@@ -127,18 +129,27 @@ static Status send_all(Process *process, const void *bytes, size_t size) {
   return STATUS_OK;
 }
 
-// A signal may be the wish to end, which the program sees to once the model has answered; soon, then.
+// Waits until there is something to receive, or `*end` [s] is reached: false. A signal may be the wish to
+// end, which the program sees to once the model has answered; soon, then.
+static bool wait_for_answer(const Process *process, double *end, bool *is_signalled) {
+  struct pollfd it = {.fd = process->socket, .events = POLLIN};
+  int ready = 0;
+  while (ready <= 0) {
+    if ((ready < 0 || *interrupt_flag()) && !*is_signalled)
+      *end = fmin(*end, now() + SECONDS_TO_END), *is_signalled = true;
+    const double left = fmin(*end - now(), SECONDS_BETWEEN_LOOKS);
+    if (!(left > 0)) return false;
+    ready = poll(&it, 1, (int)(1e3 * left) + 1);
+    if (ready < 0 && errno != EINTR) return true; // recv says what it is
+  }
+  return true;
+}
+
 static Status receive_all(Process *process, void *bytes, size_t size, double end) {
   bool is_signalled = false;
   for (char *at = bytes; size > 0;) {
-    struct pollfd it = {.fd = process->socket, .events = POLLIN};
-    const double left = 1e3 * (end - now());
-    int ready = left > 0 ? poll(&it, 1, left > INT_MAX ? INT_MAX : (int)left + 1) : 0;
-    if (ready < 0 && errno == EINTR) {
-      end = fmin(end, now() + SECONDS_TO_END), is_signalled = true;
-      continue;
-    }
-    if (ready == 0) return is_signalled ? fail_interrupted(process) : fail_late(process);
+    if (!wait_for_answer(process, &end, &is_signalled))
+      return is_signalled ? fail_interrupted(process) : fail_late(process);
     ssize_t got = recv(process->socket, at, size, 0);
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) return fail_ended(process);

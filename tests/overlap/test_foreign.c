@@ -12,6 +12,7 @@
 #include <tetlap/model.h>
 #include <unistd.h>
 
+#include "base/interrupt.h"
 #include "base/random.h"
 #include "overlap/model.h"
 #include "overlap/source.h"
@@ -361,6 +362,22 @@ START_TEST(commands_that_are_wrong_leave_no_process) {
 }
 END_TEST
 
+// A wish to end that came before the request, or between it and the wait for its answer, which no signal
+// interrupts any more.
+START_TEST(a_wish_to_end_is_seen_while_a_model_computes) {
+  if (!has_numpy()) return;
+  OverlapModel model;
+  setenv("TETLAP_MODEL_SECONDS", "300", 1);
+  open_model(&model, PYTHON("hangs"));
+  *interrupt_flag() = 1;
+  double v[PAIRS];
+  OverlapBatch batch = {.pair_count = PAIRS, .pairs = pairs[0], .volume = v};
+  ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_INTERRUPTED);
+  overlap_model_destroy(&model);
+  ck_assert_int_eq(count_children(), 0);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("models of users");
   draw();
@@ -377,5 +394,6 @@ int main(void) {
   tcase_add_test(cases, a_model_that_writes_nothing_has_not_answered);
   tcase_add_test(cases, a_model_gets_no_file_of_the_program);
   tcase_add_test(cases, commands_that_are_wrong_leave_no_process);
+  tcase_add_test(cases, a_wish_to_end_is_seen_while_a_model_computes);
   return suite_run("foreign", cases, 60);
 }
