@@ -220,7 +220,8 @@ Status fem_run_loop_turn(FemRunState *run) {
     if (run->time >= run->stage_end) TRY(fem_run_stage_change(run));
     TRY(run->integrator ? fem_run_step_advance(run) : sleep_on(run));
   }
-  return fem_run_checkpoint_is_due(run) ? fem_run_loop_begin_anew(run) : STATUS_OK;
+  const FemIntegratorStats stats = fem_run_state_stats(run);
+  return fem_run_checkpoint_is_due(run, &stats) ? fem_run_loop_begin_anew(run) : STATUS_OK;
 }
 
 static Status keep_account(FemRunState *run) {

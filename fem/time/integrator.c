@@ -121,8 +121,9 @@ static double unbalance(void *self, const double *balance) {
   FemIntegrator *integrator = self;
   const ContactEvaluation *contact;
   if (fem_effect_contact_evaluate(integrator->system, integrator->state, &contact)) return INFINITY;
-  return fem_balance_excess(&integrator->balance, integrator->system, contact ? contact->given_forces : NULL,
-                            &integrator->part, balance);
+  const FemSystem *system = integrator->system;
+  return fem_balance_excess(&integrator->balance, system->model, &integrator->part, system->forces,
+                            contact ? contact->given_forces : NULL, balance);
 }
 
 static Status check_def(const FemIntegratorDef *def) {

@@ -61,18 +61,17 @@ static bool is_calm(const FemRunState *run, const FemIntegratorStats *stats) {
 // Equilibria are few and expensive, and there is no order to lose.
 enum { STATIC_STEPS = 4 };
 
-bool fem_run_checkpoint_is_due(const FemRunState *run) {
+bool fem_run_checkpoint_is_due(const FemRunState *run, const FemIntegratorStats *stats) {
   const FemSceneDef *scene = run->model->scene;
   if (fem_run_state_has_ended(run) || (!scene->is_static && run->time >= run->stage_end)) return false;
   if (scene->checkpoint_frames >= 0)
     return scene->checkpoint_frames > 0 &&
            run->next_frame >= run->checkpoint.next_frame + scene->checkpoint_frames;
-  const FemIntegratorStats stats = fem_run_state_stats(run);
-  long long steps = stats.steps - run->checkpoint.so_far.integrator.steps;
+  long long steps = stats->steps - run->checkpoint.so_far.integrator.steps;
   if (scene->is_static) return steps >= STATIC_STEPS;
   long long enough = fem_run_checkpoint_steps(run->model->free_count);
   bool is_wanted = steps >= enough || (steps >= EARLY_STEPS && is_early(run));
-  return steps >= PATIENCE * enough || (is_wanted && is_calm(run, &stats));
+  return steps >= PATIENCE * enough || (is_wanted && is_calm(run, stats));
 }
 
 static Status keep_ledger(const FemRunState *run, FemCheckpoint *next) {

@@ -5,7 +5,9 @@
 
 #include "fem/run/run_state.h"
 
-bool fem_run_checkpoint_is_due(const FemRunState *run);
+// After the steps counted in `stats` (fem_run_state_stats). Where the scene does not say how many frames lie
+// between two, it depends on steps alone, and a run that is not calm waits.
+bool fem_run_checkpoint_is_due(const FemRunState *run, const FemIntegratorStats *stats);
 
 // Takes the state between two parts as the checkpoint that the next one begins from, and offers it; what a
 // static part reached is given. After a failure the former checkpoint stands.

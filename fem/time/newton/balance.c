@@ -28,26 +28,24 @@ static double pressed_on(const double *forces, const FemModelBody *body) {
 }
 
 // Σ |r|, and Σ m |v̇| = Σ |r + f|, of each body.
-static void sum_up(FemBalance *balance, const FemSystem *system, const FemPart *part,
+static void sum_up(FemBalance *balance, const FemModel *model, const FemPart *part, const double *forces,
                    const double *residual) {
-  const FemModel *model = system->model;
   for (int b = 0; b < model->body_count; b++) balance->unbalanced[b] = balance->needed[b] = 0;
   int body = 0;
   for (int i = 0; i < part->count; i++) {
     int dof = fem_part_dof(part, i);
     while (dof / 3 >= model->bodies[body].vertex_end) body++;
     balance->unbalanced[body] += fabs(residual[i]);
-    balance->needed[body] += fabs(residual[i] + system->forces[dof]);
+    balance->needed[body] += fabs(residual[i] + forces[dof]);
   }
   ranks()->sum(balance->unbalanced, (size_t)model->body_count);
   ranks()->sum(balance->needed, (size_t)model->body_count);
 }
 
-double fem_balance_excess(FemBalance *balance, const FemSystem *system, const double *pressing,
-                          const FemPart *part, const double *residual) {
-  const FemModel *model = system->model;
+double fem_balance_excess(FemBalance *balance, const FemModel *model, const FemPart *part,
+                          const double *forces, const double *pressing, const double *residual) {
   double worst = 0, gravity = model->scene->has_gravity ? vec3_length(vec3_at(model->scene->gravity)) : 0;
-  sum_up(balance, system, part, residual);
+  sum_up(balance, model, part, forces, residual);
   for (int b = 0; b < model->scene->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
     double weight = gravity * body->mass;

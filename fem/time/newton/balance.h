@@ -5,7 +5,7 @@
 #ifndef TETLAP_FEM_TIME_NEWTON_BALANCE_H
 #define TETLAP_FEM_TIME_NEWTON_BALANCE_H
 
-#include "fem/effect/system.h"
+#include "fem/model/model.h"
 #include "fem/time/part.h"
 
 // Of each body: Σ |r|, and Σ m |v̇| [N]; both owned.
@@ -17,10 +17,10 @@ typedef struct FemBalance {
 Status fem_balance_create(FemBalance *balance, int body_count);
 void fem_balance_destroy(FemBalance *balance);
 
-// The largest Σ |r| of a body over what is allowed [1], infinite where a residual is no number. `residual` is
-// M v̇ − f of this rank's unknowns at the state that the system's forces were evaluated at last [N],
-// `pressing` contact's forces there (vertex_count, 3), NULL: none. By all ranks.
-double fem_balance_excess(FemBalance *balance, const FemSystem *system, const double *pressing,
-                          const FemPart *part, const double *residual);
+// The largest Σ |r| of a body over what is allowed [1], infinite where a residual is no number. All at one
+// state: `forces` f (vertex_count, 3), those of contact among them `pressing` (vertex_count, 3; NULL: none),
+// and `residual` M v̇ − f of this rank's unknowns [N]. By all ranks.
+double fem_balance_excess(FemBalance *balance, const FemModel *model, const FemPart *part,
+                          const double *forces, const double *pressing, const double *residual);
 
 #endif

@@ -108,6 +108,31 @@ START_TEST(with_one_of_the_four_missing_it_is_no_creep) {
 }
 END_TEST
 
+// A window at a fast pace, then two of which each comes `slow` seconds far.
+static FemStallVerdict creep(double frame, double fast, double slow, long long vain) {
+  FemStall stall = fem_stall_begin(0, 1, frame);
+  ck_assert_int_eq(fem_stall_add(&stall, FEM_STALL_WINDOW, 0, fast, LONG_STEP), FEM_STALL_GOES_ON);
+  ck_assert_int_eq(fem_stall_add(&stall, FEM_STALL_WINDOW, vain, fast + slow, LONG_STEP), FEM_STALL_GOES_ON);
+  return fem_stall_add(&stall, FEM_STALL_WINDOW, vain, fast + 2 * slow, LONG_STEP);
+}
+
+// Just more, and just not more, than a quarter in vain, a hundred thousand tries left, ten times slower, and
+// from one frame to the next.
+START_TEST(at_the_edges_a_run_just_creeps_and_just_does_not) {
+  static const double LESS = 1 - 1e-9, MORE = 1 + 1e-9;
+  const long long quarter = FEM_STALL_WINDOW / 4;
+  ck_assert_int_eq(creep(0.1, 0.2, 0.01, quarter + 1), FEM_STALL_CREEPS);
+  ck_assert_int_eq(creep(0.1, 0.2, 0.01, quarter), FEM_STALL_GOES_ON);
+  double far = 0.8 * FEM_STALL_WINDOW / (1e5 + 2 * FEM_STALL_WINDOW); // leaves 1e5 tries after both windows
+  ck_assert_int_eq(creep(0.1, 0.2, LESS * far, quarter + 1), FEM_STALL_CREEPS);
+  ck_assert_int_eq(creep(0.1, 0.2, MORE * far, quarter + 1), FEM_STALL_GOES_ON);
+  ck_assert_int_eq(creep(0.1, 0.1, LESS * 0.01, quarter + 1), FEM_STALL_CREEPS);
+  ck_assert_int_eq(creep(0.1, 0.1, MORE * 0.01, quarter + 1), FEM_STALL_GOES_ON);
+  ck_assert_int_eq(creep(0.01, 0.2, LESS * 0.01, quarter + 1), FEM_STALL_CREEPS);
+  ck_assert_int_eq(creep(0.01, 0.2, MORE * 0.01, quarter + 1), FEM_STALL_GOES_ON);
+}
+END_TEST
+
 // A tenth of the run asleep, then at the pace of before.
 START_TEST(sleep_is_no_pace_to_be_held) {
   FemStall stall = fem_stall_begin(0, 1, 0.1);
@@ -143,6 +168,7 @@ int main(void) {
   tcase_add_test(cases, the_end_is_no_stall);
   tcase_add_test(cases, a_run_creeps_that_slows_down_and_loses_steps_and_has_far_to_go);
   tcase_add_test(cases, with_one_of_the_four_missing_it_is_no_creep);
+  tcase_add_test(cases, at_the_edges_a_run_just_creeps_and_just_does_not);
   tcase_add_test(cases, sleep_is_no_pace_to_be_held);
   tcase_add_test(cases, one_window_of_creeping_is_forgiven);
   return suite_run("stall", cases, 20);
