@@ -91,7 +91,7 @@ void fem_ledger_accept(FemLedger *ledger) {
 // A smaller share is not mentioned.
 static const double NOTHING = FEM_DOUBT * FEM_DOUBT;
 // With fewer elements across a patch its pressure has the mesh's shape, whatever the stiffness
-// (docs/contact.md).
+// (docs/contact_error.md).
 static const double RESOLVED = 5;
 // Above this share of pressure times area the resultant is told alone.
 static const double ONE_WAY = 0.5;

@@ -18,7 +18,7 @@ class Compared:
 
     name: what it is called
     outcome: "finished", "failed", … as in summary.json
-    errors: dict, a row of compare.json (docs/output.md): `force_error_l2`, `trajectory_error`, `audit_force_error`, `summary`, …
+    errors: dict, a row of compare.json (docs/summary.md): `force_error_l2`, `trajectory_error`, `audit_force_error`, `summary`, …
     run: a `tetlap.Run`; None where the model has none
     """
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// pareto.json (docs/output.md) as panels of points.
+// pareto.json (docs/summary.md) as panels of points.
 
 import { format } from "../dom.js";
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// compare.json (docs/output.md) as tables: the audit, which compares the models with the reference in the same
+// compare.json (docs/summary.md) as tables: the audit, which compares the models with the reference in the same
 // states, and their own runs. A run that did not reach the end is marked.
 
 import { ownersOf } from "../data/data.js";

@@ -45,6 +45,6 @@ export function buildContacts(runs) {
     { id: "contacts" },
     h("h2", "How wrong the contact may be"),
     scrolled("Contact forces and their estimated errors", h("thead", header), h("tbody", rows.map(line))),
-    h("p.note", "Estimated where pressure × area is largest. Formulas: docs/contact.md."),
+    h("p.note", "Estimated where pressure × area is largest. Formulas: docs/contact_error.md."),
   );
 }

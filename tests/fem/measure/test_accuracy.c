@@ -128,7 +128,7 @@ START_TEST(no_stiffness_is_advised_for_a_depth_that_no_step_can_tell) {
 }
 END_TEST
 
-// The peak force of a drop errs by three times the estimate at most (docs/contact.md), the estimate falls
+// The peak force of a drop errs by three times the estimate at most (docs/contact_error.md), the estimate falls
 // with the tolerance, and the tolerance that it asks for leads to a hundredth.
 START_TEST(the_tolerance_bounds_the_error_of_a_peak_force) {
   const char *path = TETLAP_SOURCE_DIR "/examples/01_drop.yaml";
