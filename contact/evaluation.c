@@ -16,8 +16,8 @@
 #include "contact/volume/volume.h"
 #include "overlap/separation.h"
 
-// Fewer pairs take less time than to tell other ranks of them.
-enum { FEW_TO_SHARE = 128 };
+// Pairs that are looked at together. Two portions take less time than to tell other ranks of them.
+enum { PORTION_SIZE = 64, FEW_TO_SHARE = 2 * PORTION_SIZE };
 
 Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLayout *layout) {
   *evaluation = (ContactEvaluation){0};
@@ -173,12 +173,11 @@ static void move_overlap(ContactEvaluation *evaluation, bool has_field, int from
 // Marks the listed pairs but those that a face separates for certain, `mesh_count` of them of two meshes.
 static void find_faces_apart(ContactEvaluation *evaluation, const ContactLayout *layout, int mesh_count,
                              const double *positions) {
-  enum { PORTION = 64 };
 #pragma omp parallel for schedule(static) if (mesh_count > 512)
-  for (int begin = 0; begin < mesh_count; begin += PORTION) {
-    bool is_apart[PORTION];
-    double coordinates[24 * PORTION]; // most are not asked for again
-    int count = begin + PORTION < mesh_count ? PORTION : mesh_count - begin;
+  for (int begin = 0; begin < mesh_count; begin += PORTION_SIZE) {
+    bool is_apart[PORTION_SIZE];
+    double coordinates[24 * PORTION_SIZE]; // most are not asked for again
+    int count = begin + PORTION_SIZE < mesh_count ? PORTION_SIZE : mesh_count - begin;
     for (int k = 0; k < count; k++)
       contact_layout_gather_pair(layout, &evaluation->pairs[begin + k], positions,
                                  coordinates + 24 * (size_t)k);

@@ -12,9 +12,9 @@
 #include "contact/shape/shape.h"
 #include "contact/surface/middle.h"
 
-// |h| from which on a direction is one; how far h may turn at once and be followed (cosines); where an
-// element is turned, or no longer so, along and against the direction.
-static const double CLEAR = 0.4, FOLLOWED = -0.25, TURNED = 0.3, TURNED_WITHOUT_DEPTH = 0.8;
+// |h| from which on a direction is one, and the part of h along the kept direction, or against it, from which
+// on an element is not turned, or is.
+static const double CLEAR = 0.5, TURNED = 0.5;
 // The least reach of what is turned, and, by its cube, the least covered share.
 static const double REACH = 0.1;
 
@@ -98,14 +98,13 @@ static bool is_inside(const ContactPassageEntry *meeting, bool has_field) {
 static void meet(ContactPassageEntry *entry, const ContactPassageEntry *meeting, bool has_field) {
   Vec3 kept = vec3_at(entry->direction), h = vec3_at(meeting->direction);
   double length = vec3_length(h), along = vec3_dot(h, kept);
-  double turned = has_field ? TURNED : TURNED_WITHOUT_DEPTH;
   bool is_known = vec3_length(kept) > 0;
   entry->reach = meeting->reach;
   entry->covered = meeting->covered;
   if (!(meeting->covered >= rounding())) return;
-  if (is_known && along < -turned && is_inside(meeting, has_field)) entry->is_turned = true;
+  if (is_known && along < -TURNED && is_inside(meeting, has_field)) entry->is_turned = true;
   if (is_known && along > TURNED) entry->is_turned = false;
-  bool is_followed = !is_known || (!entry->is_turned && along > FOLLOWED * length);
+  bool is_followed = !is_known || (!entry->is_turned && along > 0);
   if (length > CLEAR && is_followed) vec3_store(entry->direction, vec3_scale(1 / length, h));
 }
 

@@ -10,10 +10,10 @@
 // where it sees one side of B only, about 0 where it reaches as far into either half. With the potential
 // `nodal` g is the direction of ∂V_ij/∂x, and w V_ij (contact/volume/volume.h). The element keeps the
 // direction in which it came in. The kept direction follows h from one accepted state to the next while |h| >
-// 0.4 and h turns by less than 104°: so it does where an element slides round a drum or over an edge, or
-// turns together with B. Where h points against the kept direction, the element has gone beyond the middle of
-// B and is pushed out on the other side: it is called turned. An element that leaves B while it is turned has
-// passed through; one that comes back is no longer turned.
+// ½ and h turns by less than a right angle: so it does where an element slides round a drum or over an edge,
+// or turns together with B. Where h points against the kept direction, the element has gone beyond the middle
+// of B and is pushed out on the other side: it is called turned. An element that leaves B while it is turned
+// has passed through; one that comes back is no longer turned.
 //
 // Whether an element is turned is judged by two shares, so the unit of length does not matter:
 //

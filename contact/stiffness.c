@@ -11,7 +11,7 @@
 #include "contact/shape/shape.h"
 #include "contact/volume/volume.h"
 
-enum { PORTION = 512 }; // pairs whose matrices are held at once
+enum { PORTION_SIZE = 512 }; // pairs whose matrices are held at once
 
 // ---- The vertices of an element.
 
@@ -57,7 +57,7 @@ Status contact_stiffness_create(ContactStiffness *stiffness, const ContactLayout
   *stiffness = (ContactStiffness){0};
   stiffness->most = most_of(layout);
   size_t width = 3 * (size_t)stiffness->most;
-  stiffness->matrices = memory_zeroed((size_t)PORTION * 576, sizeof(double));
+  stiffness->matrices = memory_zeroed((size_t)PORTION_SIZE * 576, sizeof(double));
   stiffness->vertices = memory_zeroed((size_t)stiffness->most, sizeof(int));
   stiffness->place = memory_zeroed((size_t)layout->def.vertex_count, sizeof(int));
   stiffness->sum = memory_zeroed(width * width, sizeof(double));
@@ -172,8 +172,8 @@ Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *l
   int count = evaluation->pair_count;
   TRY(order_pairs(stiffness, layout, count, evaluation->pairs));
   const ContactStiffnessKey *order = stiffness->order;
-  for (int first = 0; first < count; first += PORTION) {
-    int end = first + PORTION < count ? first + PORTION : count;
+  for (int first = 0; first < count; first += PORTION_SIZE) {
+    int end = first + PORTION_SIZE < count ? first + PORTION_SIZE : count;
 #pragma omp parallel for schedule(static) if (end - first > 64)
     for (int k = first; k < end; k++)
       bend(layout, evaluation, order[k].pair, stiffness->matrices + 576 * (size_t)(k - first));

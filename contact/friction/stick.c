@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "contact/limits.h"
 
 // A vertex counts as sliding from this share of its limit.
 static const double SLIDES_FROM = 0.98;
@@ -19,7 +20,8 @@ static Status check_law(const ContactStickLaw *law) {
   if (!(law->stiffness > 0 && isfinite(law->stiffness)))
     return status_fail(STATUS_INPUT, "friction: the stiffness is %g Pa/m; it must be positive",
                        law->stiffness);
-  if (!(law->weight[0] >= 0 && law->weight[1] >= 0 && fabs(law->weight[0] + law->weight[1] - 1) < 1e-12))
+  if (!(law->weight[0] >= 0 && law->weight[1] >= 0 &&
+        fabs(law->weight[0] + law->weight[1] - 1) <= CONTACT_ROUNDING))
     return status_fail(STATUS_INPUT, "friction: the weights of the two sides are %g and %g, not 1 together",
                        law->weight[0], law->weight[1]);
   return STATUS_OK;
@@ -79,7 +81,7 @@ static Vec3 times(const double A[9], Vec3 x) {
 static Vec3 divide(const double A[9], Vec3 x) {
   Vec3 r0 = vec3_at(A), r1 = vec3_at(A + 3), r2 = vec3_at(A + 6);
   double det = vec3_dot(r0, vec3_cross(r1, r2)), size = vec3_length(r0) * vec3_length(r1) * vec3_length(r2);
-  if (!(fabs(det) > 1e-9 * size)) return x;
+  if (!(fabs(det) > CONTACT_ROUNDING * size)) return x;
   Vec3 sum = vec3_add(vec3_scale(x.x, vec3_cross(r1, r2)), vec3_scale(x.y, vec3_cross(r2, r0)));
   return vec3_scale(1 / det, vec3_add(sum, vec3_scale(x.z, vec3_cross(r0, r1))));
 }

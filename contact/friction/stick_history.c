@@ -4,10 +4,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { ENTRY_SIZE = sizeof(ContactStickEntry) / sizeof(double), PER_INTERFACE = 3 + 2 };
+enum { ENTRY_SIZE = sizeof(ContactStickEntry) / sizeof(double), INTERFACE_SIZE = 3 + 2 };
 
 size_t contact_stick_history_count(int interface_count, int entry_count) {
-  return 1 + PER_INTERFACE * (size_t)interface_count + ENTRY_SIZE * (size_t)entry_count;
+  return 1 + INTERFACE_SIZE * (size_t)interface_count + ENTRY_SIZE * (size_t)entry_count;
 }
 
 ContactStickHistory contact_stick_history_view(int interface_count, double *values, size_t count) {

@@ -6,12 +6,10 @@
 
 #include "base/vec3.h"
 #include "contact/evaluation.h"
+#include "contact/limits.h"
 #include "contact/pressure/field.h"
 #include "contact/shape/ball.h"
 #include "contact/shape/shape.h"
-
-// Against a ball: where less than this share of a cell overlaps, it rubs where it goes deepest.
-static const double SLIVER = 1e-4;
 
 // ---- Which side is the slave.
 
@@ -27,7 +25,7 @@ static bool is_first_slave(const ContactLayout *layout, const ContactInterfaceDe
   const ContactBody *a = &layout->def.bodies[interface->a], *b = &layout->def.bodies[interface->b];
   if (a->is_obstacle != b->is_obstacle) return b->is_obstacle;
   double volumes[2] = {volume_of(layout, interface->a), volume_of(layout, interface->b)};
-  if (fabs(volumes[0] - volumes[1]) > 1e-6 * volumes[0]) return volumes[0] < volumes[1];
+  if (fabs(volumes[0] - volumes[1]) > CONTACT_ROUNDING * volumes[0]) return volumes[0] < volumes[1];
   return a->vertex_end - a->vertex_begin >= b->vertex_end - b->vertex_begin;
 }
 
@@ -53,7 +51,7 @@ static void meet_ball(const ContactShape *shape, double time, const double tet[1
                       const ContactFieldPair *field, ContactStickPair *pair) {
   double centre[3], deepest[4], middle[3] = {0, 0, 0};
   double whole = fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9))) / 6,
-         share = field->volume / (field->volume + SLIVER * whole);
+         share = field->volume / (field->volume + CONTACT_SLIVER * whole);
   vec3_store(centre, contact_shape_point(shape, time));
   contact_ball_nearest(tet, centre, deepest);
   for (int v = 0; v < 4; v++) {

@@ -7,20 +7,20 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "contact/limits.h"
 #include "contact/search/bounds.h"
 #include "contact/shape/shape.h"
 
 // Where the boxes of two bodies meet but the bodies may not, a margin of several steps of free motion is
 // tried, bounded so that the trial costs little more than a search.
-enum { STEPS_AHEAD = 4, WIDEST_TRIAL = STEPS_AHEAD };
+enum { WIDEST_TRIAL = CONTACT_STEPS_AHEAD };
 
 // The margin of self-contact as a share of the usual one: second neighbours in a mesh are always near, so a
 // wide margin would list them all.
 static const double SELF_MARGIN = 0.5;
 
-// The share of a margin that the next step may use up, and the step by which speeds are measured where the
-// next one is not known [s].
-static const double MARGIN_USED = 0.8, NO_STEP = 1e-9;
+// The step by which speeds are measured where the next one is not known [s].
+static const double NO_STEP = 1e-9; // not chosen: any short time does
 
 static Status create_list(ContactCandidateList *list, const ContactLayout *layout) {
   list->begin = memory_zeroed((size_t)layout->interface_count + 1, sizeof(int));
@@ -210,7 +210,7 @@ static Status search_interface(ContactCandidates *candidates, const ContactLayou
     next->margins[f] = distance;
     return STATUS_OK;
   }
-  double wide = fmin(STEPS_AHEAD * contact_motion_approach(candidates->expected, interface),
+  double wide = fmin(CONTACT_STEPS_AHEAD * contact_motion_approach(candidates->expected, interface),
                      WIDEST_TRIAL * layout->margin);
   if (wide > layout->margin) {
     TRY(search_with(candidates, layout, f, time, positions, wide));
@@ -270,7 +270,7 @@ static double time_left(const ContactCandidates *candidates, const ContactLayout
     if (candidates->is_left_out[f]) continue;
     double expected = contact_motion_approach(candidates->expected, interface),
            free = candidates->list.margins[f] - contact_motion_approach(candidates->motions, interface);
-    if (expected > 0) left = fmin(left, MARGIN_USED * free / expected * step);
+    if (expected > 0) left = fmin(left, CONTACT_MARGIN_USED * free / expected * step);
   }
   return left;
 }

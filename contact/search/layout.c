@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/vec3.h"
+#include "contact/limits.h"
 #include "contact/shape/shape.h"
 
 static double volume_of(const int vertices[4], const double *positions) {
@@ -102,11 +103,10 @@ static void list_interfaces(ContactLayout *layout) {
   layout->interface_count = count;
 }
 
-static const double MARGIN_ROUNDING = 1e-9; // of the margin
 static const uint64_t NUDGE_SEED = 20240229;
 
 static void nudge_bodies(ContactLayout *layout) {
-  layout->nudge = MARGIN_ROUNDING * layout->margin;
+  layout->nudge = CONTACT_ROUNDING * layout->margin;
   for (int b = 0; b < layout->def.body_count; b++) {
     Random random = random_seeded(NUDGE_SEED, (uint64_t)b);
     random_direction(&random, layout->nudges[b]);
@@ -134,7 +134,7 @@ static void warp_body(ContactLayout *layout, int b) {
 }
 
 static Status prepare_self(ContactLayout *layout) {
-  TRY(contact_self_create(&layout->self, &layout->def, &layout->mesh, MARGIN_ROUNDING * layout->margin));
+  TRY(contact_self_create(&layout->self, &layout->def, &layout->mesh, CONTACT_ROUNDING * layout->margin));
   if (!layout->self.outer) return STATUS_OK;
   layout->shifts = memory_zeroed((size_t)layout->mesh.position_count, 3 * sizeof(double));
   if (!layout->shifts) return status_no_memory("the contact system's volumes");

@@ -5,16 +5,12 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "contact/limits.h"
 #include "contact/search/bounds.h"
 #include "overlap/separation.h"
 
-// The skin lasts for so many steps at the speeds of now. As shares of the margin: at least, and what is no
-// longer worth a list.
-static const double STEPS_AHEAD = 3, THINNEST = 1.0 / 64, THICKEST = 0.25;
-// Of the skin, how far parties may come nearer: beyond, rounding might count.
-static const double USABLE = 0.95;
-// How much faster than expected the next step may be.
-static const double HASTE = 1.3;
+// As shares of the margin: the least skin, and one that is no longer worth a list.
+static const double THINNEST = 1.0 / 64, THICKEST = 1.0 / 4;
 
 Status contact_near_create(ContactNear *near, const ContactLayout *layout) {
   size_t cells = (size_t)layout->mesh.cell_count;
@@ -145,11 +141,12 @@ Status contact_near_update(ContactNear *near, const ContactLayout *layout,
                            const ContactCandidates *candidates, double time, const double *positions) {
   double next = longest_approach(layout, candidates, candidates->expected);
   if (near->searches != candidates->searches) near->is_made = false;
-  if (near->is_made && used(near, layout, candidates, time, positions) + HASTE * next <= USABLE * near->skin)
+  if (near->is_made &&
+      used(near, layout, candidates, time, positions) + next <= CONTACT_MARGIN_USED * near->skin)
     return STATUS_OK;
   near->is_made = false;
   near->searches = candidates->searches;
-  double skin = fmax(STEPS_AHEAD * next, THINNEST * layout->margin);
+  double skin = fmax(CONTACT_STEPS_AHEAD * next, THINNEST * layout->margin);
   if (!(skin <= THICKEST * layout->margin) || candidates->list.count == 0) return STATUS_OK;
   near->skin = skin;
   return make(near, layout, &candidates->list, time, positions);
@@ -159,6 +156,6 @@ const ContactCandidateList *contact_near_choose(ContactNear *near, const Contact
                                                 const ContactCandidates *candidates, double time,
                                                 const double *positions) {
   bool holds = near->is_made && near->searches == candidates->searches &&
-               used(near, layout, candidates, time, positions) <= USABLE * near->skin;
+               used(near, layout, candidates, time, positions) <= (1 - CONTACT_ROUNDING) * near->skin;
   return holds ? &near->list : &candidates->list;
 }

@@ -256,7 +256,7 @@ static double press_with_gradient(const Question *question, const double tet[12]
 static const double ROUGH = 1e-4;
 
 static void differentiate(const Question *question, const double tet[12], double hessian[144]) {
-  static const double STEP = 1e-5; // of the longest edge
+  static const double STEP = 1e-5; // not chosen: ε^⅓, where rounding is what a difference omits
   double step = STEP * longest_edge(tet), moved[12], high[12], low[12], volume;
   for (int c = 0; c < 12; c++) {
     memcpy(moved, tet, sizeof moved);

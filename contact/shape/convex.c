@@ -58,7 +58,7 @@ void contact_convex_make_prism(ContactConvex *convex, double radius, double half
 // ---- Polygons and clipping.
 
 // Each plane adds one corner to a convex polygon; rounding, where the polygon is thinner than that, more.
-enum { MOST_CORNERS = CONTACT_CONVEX_PLANES + 16 };
+enum { CORNER_COUNT = CONTACT_CONVEX_PLANES + 16 };
 
 typedef struct Corner {
   Vec3 x;
@@ -67,7 +67,7 @@ typedef struct Corner {
 
 typedef struct Polygon {
   int count;
-  Corner corners[MOST_CORNERS];
+  Corner corners[CORNER_COUNT];
 } Polygon;
 
 static Corner between(const Corner *p, const Corner *q, double share) {
@@ -77,7 +77,7 @@ static Corner between(const Corner *p, const Corner *q, double share) {
 }
 
 static void push(Polygon *polygon, Corner corner) {
-  if (polygon->count < MOST_CORNERS) polygon->corners[polygon->count++] = corner;
+  if (polygon->count < CORNER_COUNT) polygon->corners[polygon->count++] = corner;
 }
 
 // Keeps what lies below plane k (Sutherland and Hodgman 1974).

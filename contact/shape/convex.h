@@ -20,10 +20,10 @@
 #include "base/vec3.h"
 
 enum {
-  CONTACT_CONVEX_FACES = 64, // of a prism, at most
-  CONTACT_CONVEX_PLANES = CONTACT_CONVEX_FACES + 2,
-  CONTACT_CONVEX_CORNERS = CONTACT_CONVEX_FACES, // half of them
-  CONTACT_CONVEX_EDGES = CONTACT_CONVEX_FACES / 2 + 1,
+  CONTACT_CONVEX_FACE_COUNT = 64, // of a prism, at most
+  CONTACT_CONVEX_PLANES = CONTACT_CONVEX_FACE_COUNT + 2,
+  CONTACT_CONVEX_CORNERS = CONTACT_CONVEX_FACE_COUNT, // half of them
+  CONTACT_CONVEX_EDGES = CONTACT_CONVEX_FACE_COUNT / 2 + 1,
 };
 
 // The solid { x : normal_k·x ≤ offset_k }, symmetric about the origin.
@@ -39,8 +39,8 @@ typedef struct ContactConvex {
 // The box |x_c| ≤ half_size_c.
 void contact_convex_make_box(ContactConvex *convex, const double half_size[3]);
 // In place of the cylinder of that radius about z, |z| ≤ half_length: a prism with `faces` (even, 8 …
-// CONTACT_CONVEX_FACES) sides whose section has the same area. Its surface is off the cylinder's by no more
-// than contact_convex_prism_error · radius: 0.14 % at 48 faces, 3.3/faces² in general.
+// CONTACT_CONVEX_FACE_COUNT) sides whose section has the same area. Its surface is off the cylinder's by no
+// more than contact_convex_prism_error · radius: 0.14 % at 48 faces, 3.3/faces² in general.
 void contact_convex_make_prism(ContactConvex *convex, double radius, double half_length, int faces);
 double contact_convex_prism_error(int faces);
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/shape/definite.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
-enum { N = CONTACT_DEFINITE_SIZE, MAX_SWEEPS = 30 };
+enum { N = CONTACT_DEFINITE_SIZE };
 
 static double largest_diagonal(const double matrix[144]) {
   double largest = 0;
@@ -44,15 +45,16 @@ static void turn(double matrix[144], double vectors[144], int p, int q) {
   }
 }
 
-// Jacobi's method: eigenvalues on the diagonal, eigenvectors in columns.
+// Jacobi's method: eigenvalues on the diagonal, eigenvectors in columns. It converges quadratically; sweeps
+// are counted for what is no number.
 static void diagonalise(double matrix[144], double vectors[144]) {
   memset(vectors, 0, 144 * sizeof *vectors);
   for (int i = 0; i < N; i++) vectors[N * i + i] = 1;
-  for (int sweep = 0; sweep < MAX_SWEEPS; sweep++) {
+  for (int sweep = 0; sweep < N * N; sweep++) {
     double off = 0;
     for (int p = 0; p < N; p++)
       for (int q = p + 1; q < N; q++) off = fmax(off, fabs(matrix[N * p + q]));
-    if (!(off > 1e-14 * largest_diagonal(matrix))) return;
+    if (!(off > N * DBL_EPSILON * largest_diagonal(matrix))) return;
     for (int p = 0; p < N; p++)
       for (int q = p + 1; q < N; q++) turn(matrix, vectors, p, q);
   }

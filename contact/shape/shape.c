@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "contact/limits.h"
 #include "contact/shape/ball.h"
 #include "contact/shape/convex.h"
 #include "contact/shape/halfspace.h"
@@ -295,19 +296,16 @@ double contact_shape_speed(const ContactShape *shape, double time) {
   return length_of(shape, velocity) + turning;
 }
 
-// Lengths and angles that err by no more are those that were meant.
-static const double UNIT_ERROR = 1e-9;
-
 static bool is_orthonormal(const double axes[3][3]) {
   for (int i = 0; i < 3; i++)
     for (int j = 0; j <= i; j++)
-      if (!(fabs(vec3_dot(vec3_at(axes[i]), vec3_at(axes[j])) - (i == j)) <= UNIT_ERROR)) return false;
+      if (!(fabs(vec3_dot(vec3_at(axes[i]), vec3_at(axes[j])) - (i == j)) <= CONTACT_ROUNDING)) return false;
   return vec3_dot(vec3_cross(vec3_at(axes[0]), vec3_at(axes[1])), vec3_at(axes[2])) > 0;
 }
 
 Status contact_shape_check(const ContactShape *shape) {
   double length = vec3_length(vec3_at(shape->normal));
-  if (shape->kind == CONTACT_SHAPE_HALFSPACE && !(fabs(length - 1) <= UNIT_ERROR))
+  if (shape->kind == CONTACT_SHAPE_HALFSPACE && !(fabs(length - 1) <= CONTACT_ROUNDING))
     return status_fail(STATUS_INPUT, "contact: the normal of half-space %s has length %g instead of 1",
                        shape->name, length);
   if (shape->kind == CONTACT_SHAPE_BALL && !(shape->radius > 0 && isfinite(shape->radius)))

@@ -4,12 +4,14 @@
 #include <assert.h>
 #include <string.h>
 
+#include "contact/limits.h"
+
 enum { AFFINE_COUNT = 3, FORM_COUNT = 3, TERM_COUNT = AFFINE_COUNT + FORM_COUNT };
 
 static const double MOST_WEIGHT = 3; // Σ |w| that vertices carry well
 // Of the largest eigenvalue of the forms: what is less is left out; the second where the first gives weights
 // that are too large.
-static const double INDEPENDENT[2] = {1e-5, 1e-2};
+static const double INDEPENDENT[2] = {CONTACT_FLAT, 1e-2};
 
 // The tangent plane about the point, lengths in units of the first two vertices' distance.
 typedef struct Plane {

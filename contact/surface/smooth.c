@@ -5,10 +5,8 @@
 #include <string.h>
 
 #include "base/tet.h"
+#include "contact/limits.h"
 #include "contact/surface/smooth_face.h"
-
-static const double FLAT_TURN = 1e-5;  // 1 − the cosine between triangles: less is rounding
-static const double LEAST_CELL = 1e-4; // of a tetrahedron's volume: the least of a cell's
 
 static Vec3 rest_of(const ContactSmooth *smooth, int vertex) {
   return vec3_at(smooth->def->rest + 3 * (size_t)vertex);
@@ -33,7 +31,7 @@ static bool is_bent(const ContactSmooth *smooth, const ContactSmoothFace *face) 
   Vec3 first = normal_of(smooth, face->corners[0]);
   for (int t = 1; t < face->count; t++) {
     Vec3 other = normal_of(smooth, face->corners[t]);
-    if (!(vec3_dot(first, other) > (1 - FLAT_TURN) * vec3_length(first) * vec3_length(other))) return true;
+    if (!(vec3_dot(first, other) > (1 - CONTACT_FLAT) * vec3_length(first) * vec3_length(other))) return true;
   }
   return false;
 }
@@ -153,7 +151,7 @@ bool contact_smooth_cut(const ContactSmooth *smooth, int tet, ContactSmoothCut *
 static bool is_sound(const ContactSmooth *smooth, const Tet *tet, const ContactSmoothCut *cut) {
   Vec3 x[4];
   for (int v = 0; v < 4; v++) x[v] = rest_of(smooth, tet->corners[v]);
-  double least = LEAST_CELL * fabs(vec3_det4(x[0], x[1], x[2], x[3]));
+  double least = CONTACT_SLIVER * fabs(vec3_det4(x[0], x[1], x[2], x[3]));
   Vec3 o = cut->has_inside ? inside_of(smooth, tet, cut) : x[0];
   for (int c = 0; c < cut->count; c++) {
     const int *cell = cut->cells[c];

@@ -5,11 +5,11 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "contact/limits.h"
 #include "contact/surface/fit.h"
 
 enum { MOST_FACES = CONTACT_FIT_MOST_COUNT / 2 };
 
-static const double STRAIGHT = 1e-5;  // of an edge's length: a smaller bulge is rounding
 static const double THICKNESS = 0.25; // of a tetrahedron's height: the largest bulge
 
 static Status no_memory(void) {
@@ -201,7 +201,7 @@ static double height_below(const ContactSmooth *smooth, int e) {
 
 static void choose_edge(ContactSmooth *smooth, int e) {
   double bulge = smooth->bulges[e], most = THICKNESS * height_below(smooth, e);
-  smooth->is_curved[e] = bulge > STRAIGHT * length_of(smooth, e);
+  smooth->is_curved[e] = bulge > CONTACT_FLAT * length_of(smooth, e);
   if (!smooth->is_curved[e]) return;
   smooth->curved_count++;
   if (bulge > most) smooth->shares[e] = most / bulge;

@@ -5,12 +5,14 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "contact/limits.h"
 #include "contact/surface/fit.h"
 #include "contact/surface/smooth.h"
 #include "contact/surface/smooth_row.h"
 #include "contact/surface/surface.h"
 
-enum { NODES = 10, EIGHTHS = 8, MOST_CELLS = 24 };
+// Of a quadratic element; of a star at most.
+enum { NODE_COUNT = 10, FACE_COUNT = 4, EIGHTH_COUNT = 8, CELL_COUNT = 24 };
 
 // The node in the middle of two corners.
 static const int MIDDLE[4][4] = {{-1, 4, 5, 6}, {4, -1, 7, 8}, {5, 7, -1, 9}, {6, 8, 9, -1}};
@@ -29,19 +31,20 @@ static Face face_of(int corner) {
   return face;
 }
 
+// A place in the list of a star, o.
+enum { INSIDE = NODE_COUNT + FACE_COUNT };
+
 // A star: cells by places in a list of the element's ten nodes, the fans' centres (10 + face) and o (14).
 typedef struct Star {
-  int cells[MOST_CELLS][4];
+  int cells[CELL_COUNT][4];
   int count;
-  unsigned outer;    // bit f: face f has a fan
-  Vec3 x[NODES + 5]; // of the list, at rest
-  double weights[NODES + 5][NODES];
+  unsigned outer;     // bit f: face f has a fan
+  Vec3 x[INSIDE + 1]; // of the list, at rest
+  double weights[INSIDE + 1][NODE_COUNT];
 } Star;
 
-enum { INSIDE = NODES + 4 };
-
 // N_a at barycentric coordinates.
-static void find_shape_functions(const double lambda[4], double shape[NODES]) {
+static void find_shape_functions(const double lambda[4], double shape[NODE_COUNT]) {
   for (int v = 0; v < 4; v++) shape[v] = lambda[v] * (2 * lambda[v] - 1);
   for (int v = 0; v < 4; v++)
     for (int w = 0; w < v; w++) shape[MIDDLE[v][w]] = 4 * lambda[v] * lambda[w];
@@ -87,9 +90,9 @@ static void leave_out_slivers(FaceLoad *load) {
     Vec3 from = load->x[k], to = load->x[(k + 1) % 3], middle = vec3_scale(0.5, vec3_add(from, to));
     Vec3 outward = vec3_cross(vec3_sub(to, from), load->normal);
     double area = vec3_dot(vec3_sub(load->x[3 + k], middle), outward) / 6;
-    load->share[3 + k] -= 0.7 * area;
-    load->share[k] -= 0.15 * area;
-    load->share[(k + 1) % 3] -= 0.15 * area;
+    load->share[3 + k] -= 7.0 / 10 * area;
+    load->share[k] -= 3.0 / 20 * area;
+    load->share[(k + 1) % 3] -= 3.0 / 20 * area;
   }
 }
 
@@ -108,7 +111,7 @@ static void weigh_fan(const FaceLoad *load, Vec3 at, double weights[6]) {
   for (int n = 3; n < 6; n++) weights[n] += (1 - sum) / 3;
 }
 
-static void weigh_centre(const Vec3 x[NODES], int face, double weights[NODES]) {
+static void weigh_centre(const Vec3 x[NODE_COUNT], int face, double weights[NODE_COUNT]) {
   enum {
     ROUNDS = 20
   }; // the centre moves the areas by a share of the edges' offsets, so rounds converge fast
@@ -127,12 +130,12 @@ static void weigh_centre(const Vec3 x[NODES], int face, double weights[NODES]) {
     at = (Vec3){0, 0, 0};
     for (int n = 0; n < 6; n++) at = vec3_add(at, vec3_scale(own[n], load.x[n]));
   }
-  memset(weights, 0, NODES * sizeof *weights);
+  memset(weights, 0, NODE_COUNT * sizeof *weights);
   for (int n = 0; n < 6; n++) weights[nodes.nodes[n]] = own[n];
 }
 
 // o, as deep below each of the outer faces, were they straight.
-static void weigh_inside(const Vec3 x[NODES], unsigned outer, double weights[NODES]) {
+static void weigh_inside(const Vec3 x[NODE_COUNT], unsigned outer, double weights[NODE_COUNT]) {
   double lambda[4] = {0.25, 0.25, 0.25, 0.25}, inverse[4], sum = 0;
   double six = fabs(vec3_det4(x[0], x[1], x[2], x[3]));
   int count = 0;
@@ -149,7 +152,7 @@ static void weigh_inside(const Vec3 x[NODES], unsigned outer, double weights[NOD
 
 static void place_carried(Star *star, int place) {
   star->x[place] = (Vec3){0, 0, 0};
-  for (int a = 0; a < NODES; a++)
+  for (int a = 0; a < NODE_COUNT; a++)
     star->x[place] = vec3_add(star->x[place], vec3_scale(star->weights[place][a], star->x[a]));
 }
 
@@ -167,26 +170,25 @@ static void cut_face(Star *star, int face, bool is_outer) {
       add_cell(star, corner, after, before);
       continue;
     }
-    add_cell(star, corner, after, NODES + face);
-    add_cell(star, before, corner, NODES + face);
+    add_cell(star, corner, after, NODE_COUNT + face);
+    add_cell(star, before, corner, NODE_COUNT + face);
   }
   if (!is_outer) add_cell(star, f.nodes[3], f.nodes[4], f.nodes[5]);
 }
 
 // Cuts an element with these faces on the surface. False: it is so curved that a cell would be flat or inside
 // out.
-static bool make_star(Star *star, const Vec3 x[NODES], unsigned outer) {
-  static const double FLAT = 1e-3; // a cell's volume over the element's
-  double least = FLAT * vec3_det4(x[0], x[1], x[2], x[3]);
+static bool make_star(Star *star, const Vec3 x[NODE_COUNT], unsigned outer) {
+  double least = CONTACT_SLIVER * vec3_det4(x[0], x[1], x[2], x[3]);
   memset(star->weights, 0, sizeof star->weights);
-  memcpy(star->x, x, NODES * sizeof *x);
+  memcpy(star->x, x, NODE_COUNT * sizeof *x);
   star->count = 0, star->outer = outer;
   weigh_inside(x, outer, star->weights[INSIDE]);
   place_carried(star, INSIDE);
   for (int f = 0; f < 4; f++) {
     if (outer >> f & 1) {
-      weigh_centre(x, f, star->weights[NODES + f]);
-      place_carried(star, NODES + f);
+      weigh_centre(x, f, star->weights[NODE_COUNT + f]);
+      place_carried(star, NODE_COUNT + f);
     }
     cut_face(star, f, outer >> f & 1);
   }
@@ -280,12 +282,12 @@ static Status keep_tet(Work *work, int tet) {
   return add_tet(work, tet, false, vertices);
 }
 
-static Status add_star(Work *work, const int nodes[NODES], const Star *star, int origin) {
-  int numbers[NODES + 5];
-  for (int a = 0; a < NODES; a++) numbers[a] = work->stars->place[nodes[a]];
-  for (int k = NODES; k < NODES + 5; k++)
-    if (k == INSIDE || star->outer >> (k - NODES) & 1)
-      TRY(add_vertex(work, NODES, nodes, star->weights[k], NODES, &numbers[k]));
+static Status add_star(Work *work, const int nodes[NODE_COUNT], const Star *star, int origin) {
+  int numbers[INSIDE + 1];
+  for (int a = 0; a < NODE_COUNT; a++) numbers[a] = work->stars->place[nodes[a]];
+  for (int k = NODE_COUNT; k < INSIDE + 1; k++)
+    if (k == INSIDE || star->outer >> (k - NODE_COUNT) & 1)
+      TRY(add_vertex(work, NODE_COUNT, nodes, star->weights[k], NODE_COUNT, &numbers[k]));
   for (int c = 0; c < star->count; c++) {
     int vertices[4];
     for (int v = 0; v < 4; v++) vertices[v] = numbers[star->cells[c][v]];
@@ -297,13 +299,13 @@ static Status add_star(Work *work, const int nodes[NODES], const Star *star, int
 static Status add_element(Work *work, const ContactBody *body, int element) {
   const ContactSystemDef *given = work->given;
   const int *nodes = given->quadratics[element];
-  int first = body->tet_begin + EIGHTHS * (element - body->quadratic_begin);
+  int first = body->tet_begin + EIGHTH_COUNT * (element - body->quadratic_begin);
   Star star;
-  Vec3 x[NODES];
-  for (int a = 0; a < NODES; a++) x[a] = vec3_at(given->rest + 3 * (size_t)nodes[a]);
+  Vec3 x[NODE_COUNT];
+  for (int a = 0; a < NODE_COUNT; a++) x[a] = vec3_at(given->rest + 3 * (size_t)nodes[a]);
   if (work->outer[element] && make_star(&star, x, work->outer[element]))
     return add_star(work, nodes, &star, first);
-  for (int i = first; i < first + EIGHTHS; i++) TRY(keep_tet(work, i));
+  for (int i = first; i < first + EIGHTH_COUNT; i++) TRY(keep_tet(work, i));
   return STATUS_OK;
 }
 
@@ -512,13 +514,13 @@ void contact_stars_cover(const ContactStars *stars, const double *covered, const
       continue;
     }
     if (covered[i] == 0) continue;
-    for (int k = 0; k < EIGHTHS; k++) whole += volumes[k];
-    for (int k = 0; k < EIGHTHS; k++) at[k] += covered[i] * volumes[k] / whole;
+    for (int k = 0; k < EIGHTH_COUNT; k++) whole += volumes[k];
+    for (int k = 0; k < EIGHTH_COUNT; k++) at[k] += covered[i] * volumes[k] / whole;
   }
 }
 
 void contact_stars_spread(const ContactStars *stars, int *values) {
   for (int i = 0; stars->is_needed && i < stars->def.tet_count; i++)
-    for (int k = 1; stars->is_star[i] && k < EIGHTHS; k++)
+    for (int k = 1; stars->is_star[i] && k < EIGHTH_COUNT; k++)
       values[stars->origin[i] + k] = values[stars->origin[i]];
 }

@@ -11,10 +11,10 @@
 // Held by test_audit, test_momentum, test_scenes.
 #define FEM_ENERGY 1e-3
 
-// Written forces and motion of a body differ by no more than this share of all its impulses
+// The same share: written forces and motion of a body differ by no more of all its impulses
 // (fem/measure/momentum.h).
 // Held by test_momentum, test_result.
-#define FEM_MOMENTUM 1e-3
+#define FEM_MOMENTUM FEM_ENERGY
 
 // Without contact nothing jumps, and BDF 2 keeps a modified energy. It differs from the audited total by a
 // term of second order in the step. Only a gain of so many times FEM_ENERGY shows an error of the program or
@@ -23,10 +23,10 @@
 // Held by test_audit, test_beam.
 #define FEM_WITHOUT_CONTACT 20
 
-// A difference of this share of what it is compared with is rounding: of the scene's energy, of a tolerance
-// of Newton's method, of an element's cube.
+// A promise's share of a promise is rounding: of the scene's energy, of a tolerance of Newton's method, of an
+// element's cube, of a run's time that a step goes on by.
 // Held by test_audit, test_balance.
-#define FEM_ROUNDING 1e-6
+#define FEM_ROUNDING (FEM_ENERGY * FEM_ENERGY)
 
 // Times that differ by this share of the run's end are one: knots of what is prescribed, frames, the
 // shortest step. IDA distinguishes 2e-14.

@@ -3,12 +3,10 @@
 
 #include <math.h>
 
+#include "fem/model/limits.h"
 #include "fem/model/tolerance.h"
 #include "fem/run/run_frames.h"
 #include "fem/run/run_watch.h"
-
-// A static run gives up where a step of load becomes shorter than this share of the time between two frames.
-static const double SHORTEST_LOAD_STEP = 1e-4;
 
 // The work of a step of load, and how far it may be wrong; that of obstacles the audit adds itself.
 static void keep_load_step(FemRunState *run, double step, double work_before, const FemEnergy *energy) {
@@ -35,7 +33,7 @@ Status fem_run_load_advance(FemRunState *run) {
   double longest = scene->max_step > 0 ? scene->max_step : scene->end / scene->frames;
   double step = run->next_step > 0 ? fmin(run->next_step, longest) : longest;
   FemForesight foresight = {.displacement = fem_model_position_tolerance(run->model),
-                            .resolution = SHORTEST_LOAD_STEP * scene->end / scene->frames,
+                            .resolution = FEM_ROUNDING * scene->end / scene->frames,
                             .static_share = scene->tolerance};
   double target = fem_scene_frame_time(scene, run->next_frame),
          to = fmin(run->time + step, fmin(target, run->target)), from = run->time,
@@ -44,7 +42,7 @@ Status fem_run_load_advance(FemRunState *run) {
   Status status = fem_statics_step(&run->statics, run->time, to, run->u);
   if (status == STATUS_RETRY) {
     run->next_step = 0.5 * (to - run->time);
-    bool is_too_short = run->next_step < SHORTEST_LOAD_STEP * scene->end / scene->frames;
+    bool is_too_short = run->next_step < FEM_ROUNDING * scene->end / scene->frames;
     return is_too_short ? status_fail(STATUS_SOLVER, "%s", status_message()) : STATUS_OK;
   }
   TRY(status);

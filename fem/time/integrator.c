@@ -273,7 +273,7 @@ static Status find_derivatives(FemIntegrator *integrator, double time) {
 
 // IDA's own first step: a thousandth of the way to the end, or what changes the state by half of the
 // tolerances where that is shorter (SUNDIALS, IDASolve).
-static const double START_SHARE = 1e-3, START_CHANGE = 0.5;
+static const double START_SHARE = 1e-3, START_CHANGE = 0.5; // not chosen: IDA's own
 
 // ‖ẏ‖ in the norm of the error test, without the velocity that nothing can notice.
 static double rate_of_change(FemIntegrator *integrator, bool *has_common) {

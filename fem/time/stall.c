@@ -4,8 +4,11 @@
 #include <math.h>
 #include <stdbool.h>
 
-// Tries that no run may take; a tenth of those a run that creeps; and a tenth of the pace that was possible.
-static const double MOST_TRIES = 1e6, TENTH = 0.1;
+#include "fem/model/limits.h"
+
+// Tries that no run may take, each for a share of its time that is rounding; a tenth of those a run that
+// creeps; and a tenth of the pace that was possible.
+static const double MOST_TRIES = 1 / FEM_ROUNDING, TENTH = 0.1;
 // Of a window's tries, without a step.
 static const double MOST_VAIN = 0.25;
 enum { STRIKES = 2 };

@@ -159,8 +159,8 @@ static Vec3 corner_of(const ContactConvex *solid, int k) {
 
 typedef struct Ring {
   int count;
-  int corners[CONTACT_CONVEX_FACES]; // counter-clockwise from outside
-  double angles[CONTACT_CONVEX_FACES];
+  int corners[CONTACT_CONVEX_FACE_COUNT]; // counter-clockwise from outside
+  double angles[CONTACT_CONVEX_FACE_COUNT];
   Vec3 centre;
 } Ring;
 

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A factor of a cube of n vertices takes n² operations, of a bar or a plate of extents L ≥ W ≥ H fewer by
 // √(WH)/L: L/√(WH) pieces with separators of n WH/V^(2/3) vertices. So a model is as hard as a cube of √(Σ n²
-// √(WH)/L) vertices. Measured, two cubes in contact: `amg` takes less processor time than `cholmod` from
-// 2,500 vertices on in motion, PETSc's start of 0.2 s included, from 5,000 in statics. The bounds below are
-// twice that, since a factor cannot fail to converge.
+// √(WH)/L) vertices.
 #include "fem/run/check/choice.h"
 
 #include <math.h>
 
-enum { MOST_IN_MOTION = 5000, MOST_IN_STATICS = 2 * MOST_IN_MOTION }; // vertices of a cube
+// Vertices of two cubes in contact from which on `amg` takes less processor time than `cholmod` in motion,
+// PETSc's start of 0.2 s included; in statics from twice as many.
+static const double AMG_IS_FASTER_FROM = 2500; // not chosen: measured
+// Twice that, since a factor cannot fail to converge.
+static const double MOST_IN_MOTION = 2 * AMG_IS_FASTER_FROM, MOST_IN_STATICS = 2 * MOST_IN_MOTION;
 // A scene whose matrix never changes is factorised once a step size.
 static const double MOST_IF_LINEAR = 40000;
 // As volumes become incompressible multigrid takes ever more iterations.
@@ -63,21 +65,23 @@ static double solver_bytes(const FemModel *model, FemSolverKind kind) {
   switch (kind) {
   case FEM_SOLVER_AMG:
   case FEM_SOLVER_GAMG: // measured: PETSc itself, and what the levels take beyond what assembly took before
-    return 2.7e7 + 400 * unknowns;
+    return 2.7e7 + 400 * unknowns; // not chosen: measured
   case FEM_SOLVER_PCG:
     return 15 * sizeof(double) * unknowns;
   default:
     // Nested dissection in three dimensions: O(n^{4/3}) factor entries (George 1973); the constant is
     // measured, with what CHOLMOD needs beside the factor.
-    return 25 * pow(unknowns, 4.0 / 3.0) * sizeof(double);
+    return 25 * pow(unknowns, 4.0 / 3) * sizeof(double); // not chosen: measured
   }
 }
 
 // Measured, a ball in a block of 22,000 vertices on two and four ranks (a beam of 47,000 on two: 3 % less):
 // what each rank has at its start, of the whole, and of its share with the levels of BoomerAMG [bytes].
-static const double RANK_BYTES = 5.2e7, WHOLE_BYTES_A_VERTEX = 1750, SHARED_BYTES_AN_UNKNOWN = 1670;
+static const double RANK_BYTES = 5.2e7;             // not chosen: measured
+static const double WHOLE_BYTES_A_VERTEX = 1750;    // not chosen: measured
+static const double SHARED_BYTES_AN_UNKNOWN = 1670; // not chosen: measured
 // Without the solver's.
-static const double ADDED_BYTES_AN_UNKNOWN = 1200;
+static const double ADDED_BYTES_AN_UNKNOWN = 1200; // not chosen: measured
 
 FemRunChoice fem_run_choice_over(const FemModel *model, int rank_count) {
   FemRunChoice choice = {.kind = model->scene->solver, .why = ""};

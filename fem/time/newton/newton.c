@@ -15,14 +15,14 @@
 static const double WORTH_A_MATRIX = 2;
 
 sunrealtype fem_newton_norm(N_Vector x_vector, N_Vector weights) {
-  enum { SUMS = 8 };
+  enum { SUM_COUNT = 8 };
   const double *x = N_VGetArrayPointer(x_vector), *w = N_VGetArrayPointer(weights);
   sunindextype n = NV_LENGTH_S(x_vector), i = 0;
-  double sums[SUMS] = {0}, sum = 0;
-  for (; i + SUMS <= n; i += SUMS)
-    for (int k = 0; k < SUMS; k++) sums[k] += x[i + k] * w[i + k] * (x[i + k] * w[i + k]);
+  double sums[SUM_COUNT] = {0}, sum = 0;
+  for (; i + SUM_COUNT <= n; i += SUM_COUNT)
+    for (int k = 0; k < SUM_COUNT; k++) sums[k] += x[i + k] * w[i + k] * (x[i + k] * w[i + k]);
   for (; i < n; i++) sum += x[i] * w[i] * (x[i] * w[i]);
-  for (int k = 0; k < SUMS; k++) sum += sums[k];
+  for (int k = 0; k < SUM_COUNT; k++) sum += sums[k];
   double all[2] = {sum, (double)n};
   ranks()->sum(all, 2);
   return sqrt(all[0] / all[1]);
