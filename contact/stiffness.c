@@ -99,19 +99,23 @@ static bool are_alike(const ContactStiffnessKey *a, const ContactStiffnessKey *b
   return a->interface == b->interface && a->elements[0] == b->elements[0] && a->elements[1] == b->elements[1];
 }
 
-static Status order_pairs(ContactStiffness *stiffness, const ContactLayout *layout, int count,
-                          const ContactPair *pairs) {
+// Those of the interface; `*ordered`: how many they are.
+static Status order_pairs(ContactStiffness *stiffness, const ContactLayout *layout, int interface, int count,
+                          const ContactPair *pairs, int *ordered) {
+  *ordered = 0;
   if (!memory_reserve((void **)&stiffness->order, &stiffness->order_capacity, (size_t)count,
                       sizeof *stiffness->order))
     return status_no_memory("contact stiffness");
   for (int k = 0; k < count; k++) {
     const int *cells = pairs[k].cells;
-    stiffness->order[k] = (ContactStiffnessKey){pairs[k].interface,
-                                                {contact_layout_origin(layout, cells[0]),
-                                                 cells[1] < 0 ? -1 : contact_layout_origin(layout, cells[1])},
-                                                k};
+    if (interface != CONTACT_ALL_INTERFACES && pairs[k].interface != interface) continue;
+    stiffness->order[(*ordered)++] =
+        (ContactStiffnessKey){pairs[k].interface,
+                              {contact_layout_origin(layout, cells[0]),
+                               cells[1] < 0 ? -1 : contact_layout_origin(layout, cells[1])},
+                              k};
   }
-  if (count > 1) qsort(stiffness->order, (size_t)count, sizeof *stiffness->order, compare);
+  if (*ordered > 1) qsort(stiffness->order, (size_t)*ordered, sizeof *stiffness->order, compare);
   return STATUS_OK;
 }
 
@@ -168,9 +172,10 @@ static void bend(const ContactLayout *layout, const ContactEvaluation *evaluatio
 }
 
 Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *layout,
-                             const ContactEvaluation *evaluation, const ContactStiffnessSink *sink) {
-  int count = evaluation->pair_count;
-  TRY(order_pairs(stiffness, layout, count, evaluation->pairs));
+                             const ContactEvaluation *evaluation, int interface,
+                             const ContactStiffnessSink *sink) {
+  int count;
+  TRY(order_pairs(stiffness, layout, interface, evaluation->pair_count, evaluation->pairs, &count));
   const ContactStiffnessKey *order = stiffness->order;
   for (int first = 0; first < count; first += PORTION_SIZE) {
     int end = first + PORTION_SIZE < count ? first + PORTION_SIZE : count;
@@ -194,7 +199,7 @@ static Status visit_elements(ContactStiffness *stiffness, const ContactLayout *l
                              const ContactPair *pairs, void *visitor,
                              Status (*visit)(void *visitor, int count, const int *vertices)) {
   Status status = STATUS_OK;
-  TRY(order_pairs(stiffness, layout, count, pairs));
+  TRY(order_pairs(stiffness, layout, CONTACT_ALL_INTERFACES, count, pairs, &count));
   for (int k = 0; k < count && !status; k++) {
     if (k > 0 && are_alike(&stiffness->order[k], &stiffness->order[k - 1])) continue;
     const ContactPair *pair = &pairs[stiffness->order[k].pair];

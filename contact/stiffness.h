@@ -44,10 +44,13 @@ Status contact_stiffness_create(ContactStiffness *stiffness, const ContactLayout
 void contact_stiffness_destroy(ContactStiffness *stiffness);
 size_t contact_stiffness_bytes(const ContactStiffness *stiffness); // on the heap
 
-// Hands ∂²U/∂x² of an evaluation to the sink, as contact_field_bend or contact_volume_bend gives it, by
-// vertices of the contact mesh. STATUS_MEMORY possible.
+enum { CONTACT_ALL_INTERFACES = -1 };
+
+// Hands ∂²U/∂x² of an evaluation to the sink, that of one interface or of all, as contact_field_bend or
+// contact_volume_bend gives it, by vertices of the contact mesh. STATUS_MEMORY possible.
 Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *layout,
-                             const ContactEvaluation *evaluation, const ContactStiffnessSink *sink);
+                             const ContactEvaluation *evaluation, int interface,
+                             const ContactStiffnessSink *sink);
 
 // Visits cliques that contain every list the sink would be given if all candidates whose boxes are within
 // `reach` of each other (a half-space: that are within `reach` of it) overlapped.

@@ -343,7 +343,29 @@ void contact_system_add_resting(const ContactSystem *system, double *force) {
 
 Status contact_system_stiffness(ContactSystem *system, const ContactEvaluation *evaluation,
                                 const ContactStiffnessSink *sink) {
-  return contact_stiffness_add(&system->stiffness, &system->layout, evaluation,
+  return contact_system_stiffness_of(system, evaluation, CONTACT_ALL_INTERFACES, sink);
+}
+
+void contact_system_add_force_of(const ContactSystem *system, const ContactEvaluation *evaluation,
+                                 int interface, double *force) {
+  const ContactPatches *patches = &evaluation->patches;
+  for (int p = 0; p < patches->patch_count; p++) {
+    const ContactPatch *patch = &patches->patches[p];
+    for (int n = patch->node_begin; n < patch->node_end && patch->interface == interface; n++)
+      contact_stars_push(&system->stars, patches->nodes[n].vertex, vec3_at(patches->nodes[n].force), force);
+  }
+}
+
+double contact_system_energy_of(const ContactEvaluation *evaluation, int interface) {
+  double energy = 0;
+  for (int k = 0; k < evaluation->pair_count; k++)
+    if (evaluation->pairs[k].interface == interface) energy += evaluation->fields[k].energy;
+  return energy;
+}
+
+Status contact_system_stiffness_of(ContactSystem *system, const ContactEvaluation *evaluation, int interface,
+                                   const ContactStiffnessSink *sink) {
+  return contact_stiffness_add(&system->stiffness, &system->layout, evaluation, interface,
                                contact_system_sink(system, sink));
 }
 

@@ -11,36 +11,56 @@
 enum { MAX_CORRECTIONS = 8, MAX_REFINEMENTS = 4 };
 // Newton's method ends once a step does not halve the force; λ once its residual is this.
 static const double LEAST_FALL = 0.5, RESIDUAL = 1e-12;
+// How far coordinates move for a difference of forces, as a share of the mean edge.
+static const double WAY = 1e-7;
 
 typedef struct Adjoint {
+  const FemGradientDef *def; // borrowed
   FemEquilibrium equilibrium;
   FemState state;
+  FemTangent tangent;
+  FemVaried varied;
+  FemChange change;
   int count;                                 // n
   double *u, *force, *step, *right, *lambda; // (n)
-  double *along;                             // ∂f/∂p on all vertices      (vertex_count, 3)
+  double *multipliers; // λ on all vertices, 0 where prescribed    (goal_count, vertex_count, 3)
+  double *slopes;      // ∂g/∂x, less K λ                          (goal_count, vertex_count, 3)
+  double *factors;     // of the terms of all goals
 } Adjoint;
 
-static void destroy(Adjoint *adjoint) {
-  fem_equilibrium_destroy(&adjoint->equilibrium);
-  fem_state_destroy(&adjoint->state);
-  double *arrays[] = {adjoint->u,     adjoint->force,  adjoint->step,
-                      adjoint->right, adjoint->lambda, adjoint->along};
-  for (int i = 0; i < 6; i++) memory_free(arrays[i]);
+static size_t values_of(const Adjoint *adjoint) {
+  return 3 * (size_t)adjoint->equilibrium.system->model->vertex_count;
 }
 
-static Status create(Adjoint *adjoint, FemSystem *system) {
-  *adjoint = (Adjoint){.count = system->numbering.count};
-  size_t n = (size_t)adjoint->count, values = 3 * (size_t)system->model->vertex_count;
-  adjoint->u = memory_zeroed(n, sizeof(double));
-  adjoint->force = memory_zeroed(n, sizeof(double));
-  adjoint->step = memory_zeroed(n, sizeof(double));
-  adjoint->right = memory_zeroed(n, sizeof(double));
-  adjoint->lambda = memory_zeroed(n, sizeof(double));
-  adjoint->along = memory_zeroed(values, sizeof(double));
-  if (!adjoint->u || !adjoint->force || !adjoint->step || !adjoint->right || !adjoint->lambda ||
-      !adjoint->along)
-    return status_no_memory("a gradient");
+static void destroy(Adjoint *adjoint) {
+  fem_change_destroy(&adjoint->change);
+  fem_varied_destroy(&adjoint->varied);
+  fem_tangent_destroy(&adjoint->tangent);
+  fem_equilibrium_destroy(&adjoint->equilibrium);
+  fem_state_destroy(&adjoint->state);
+  double *arrays[] = {adjoint->u,      adjoint->force,       adjoint->step,   adjoint->right,
+                      adjoint->lambda, adjoint->multipliers, adjoint->slopes, adjoint->factors};
+  for (int i = 0; i < 8; i++) memory_free(arrays[i]);
+}
+
+static size_t count_terms(const FemGradientDef *def) {
+  size_t count = 0;
+  for (int g = 0; g < def->goal_count; g++) count += (size_t)def->goals[g].term_count;
+  return count;
+}
+
+static Status create(Adjoint *adjoint, FemSystem *system, const FemGradientDef *def) {
+  *adjoint = (Adjoint){.def = def, .count = system->numbering.count};
+  size_t n = (size_t)adjoint->count, all = 3 * (size_t)system->model->vertex_count * (size_t)def->goal_count;
+  double **arrays[] = {&adjoint->u, &adjoint->force, &adjoint->step, &adjoint->right, &adjoint->lambda};
+  bool fits = true;
+  for (int i = 0; i < 5; i++) fits = (*arrays[i] = memory_zeroed(n, sizeof(double))) && fits;
+  fits = (adjoint->multipliers = memory_zeroed(all, sizeof(double))) && fits;
+  fits = (adjoint->slopes = memory_zeroed(all, sizeof(double))) && fits;
+  fits = (adjoint->factors = memory_zeroed(count_terms(def), sizeof(double))) && fits;
+  if (!fits) return status_no_memory("a gradient");
   TRY(fem_system_create_state(system, &adjoint->state));
+  TRY(fem_varied_create(&adjoint->varied, system->model));
   return fem_equilibrium_create(&adjoint->equilibrium, system, &adjoint->state, &fem_solver_cholmod);
 }
 
@@ -66,29 +86,14 @@ static Status settle(Adjoint *adjoint, double time, double *left) {
   return STATUS_OK;
 }
 
-// g and ∂g/∂x on the unknowns.
-static double evaluate(const FemSystem *system, const FemState *state, const FemQuantity *quantity,
-                       double *right) {
-  const FemModel *model = system->model;
-  const FemModelBody *body = &model->bodies[quantity->body];
-  double share = 1.0 / (body->vertex_end - body->vertex_begin), sum = 0;
-  for (int a = body->vertex_begin; a < body->vertex_end; a++) {
-    size_t dof = 3 * (size_t)a + (size_t)quantity->component;
-    sum += share * (state->positions[dof] - model->rest[dof]);
-    int unknown = system->numbering.unknown_of_dof[dof];
-    if (unknown >= 0) right[unknown] = share;
-  }
-  return sum;
-}
-
-// K λ = ∂g/∂x by K's factor, with iterative refinement.
-static Status solve(Adjoint *adjoint, double time, double *residual) {
+// λ by K's factor, with iterative refinement.
+static Status solve(Adjoint *adjoint, double *residual) {
   FemEquilibrium *equilibrium = &adjoint->equilibrium;
   int n = adjoint->count;
   double whole = sqrt(fem_solver_dot(adjoint->right, adjoint->right, n));
   *residual = 0;
+  memset(adjoint->lambda, 0, (size_t)n * sizeof(double));
   if (!(whole > 0)) return STATUS_OK;
-  TRY(fem_equilibrium_factorise(equilibrium, time, adjoint->u, 0));
   memcpy(adjoint->force, adjoint->right, (size_t)n * sizeof(double));
   for (int k = 0; k < MAX_REFINEMENTS; k++) {
     TRY(fem_equilibrium_solve(equilibrium, adjoint->force, adjoint->step));
@@ -101,30 +106,86 @@ static Status solve(Adjoint *adjoint, double time, double *residual) {
   return STATUS_OK;
 }
 
-// λ · ∂f/∂p; no parameter acts on a displacement at fixed positions.
-static Status differentiate(Adjoint *adjoint, const FemParameter *parameter, double *derivative) {
+// How far K λ is from the difference of forces along λ.
+static Status compare(Adjoint *adjoint, double *mismatch) {
   FemSystem *system = adjoint->equilibrium.system;
-  memset(adjoint->along, 0, 3 * (size_t)system->model->vertex_count * sizeof(double));
-  TRY(fem_parameter_add_force(parameter, system, &adjoint->state, adjoint->along));
-  *derivative = 0;
-  for (int i = 0; i < adjoint->count; i++)
-    *derivative += adjoint->lambda[i] * adjoint->along[system->numbering.dof_of_unknown[i]];
+  int n = adjoint->count;
+  double largest = fem_equilibrium_largest(adjoint->lambda, n), sum = 0, whole = 0;
+  *mismatch = 0;
+  if (!(largest > 0)) return STATUS_OK;
+  double share = WAY * system->model->edge / largest, time = adjoint->state.time;
+  double *ahead = adjoint->right, *behind = adjoint->force;
+  for (int side = 1; side >= -1; side -= 2) {
+    for (int i = 0; i < n; i++) adjoint->step[i] = adjoint->u[i] + side * share * adjoint->lambda[i];
+    TRY(fem_equilibrium_forces(&adjoint->equilibrium, time, adjoint->step, side > 0 ? ahead : behind));
+  }
+  for (int i = 0; i < n; i++) ahead[i] = (ahead[i] - behind[i]) / (2 * share);
+  fem_matrix_multiply(&system->matrix, adjoint->lambda, adjoint->step);
+  for (int i = 0; i < n; i++) {
+    sum += (adjoint->step[i] + ahead[i]) * (adjoint->step[i] + ahead[i]);
+    whole += adjoint->step[i] * adjoint->step[i];
+  }
+  *mismatch = sqrt(sum / whole);
+  return fem_equilibrium_forces(&adjoint->equilibrium, time, adjoint->u, adjoint->force);
+}
+
+// g, λ, and what is left of ∂g/∂x on the prescribed coordinates.
+static Status solve_goal(Adjoint *adjoint, int g, double *factors, FemGradient *gradient) {
+  const FemNumbering *numbering = &adjoint->equilibrium.system->numbering;
+  size_t values = values_of(adjoint);
+  double *slope = adjoint->slopes + values * (size_t)g, *all = adjoint->multipliers + values * (size_t)g;
+  TRY(fem_goal_evaluate(&adjoint->def->goals[g], &adjoint->tangent, &gradient->values[g], slope, factors));
+  for (int i = 0; i < adjoint->count; i++) adjoint->right[i] = slope[numbering->dof_of_unknown[i]];
+  TRY(solve(adjoint, &gradient->residuals[g]));
+  for (int i = 0; i < adjoint->count; i++) all[numbering->dof_of_unknown[i]] = adjoint->lambda[i];
+  TRY(compare(adjoint, &gradient->mismatches[g]));
+  fem_tangent_multiply(&adjoint->tangent, all, adjoint->change.product);
+  for (size_t i = 0; i < values; i++) slope[i] -= adjoint->change.product[i];
   return STATUS_OK;
 }
 
-static Status find(FemGradient *gradient, Adjoint *adjoint, const FemQuantity *quantity,
-                   const FemParameter *parameters, int parameter_count) {
-  FemSystem *system = adjoint->equilibrium.system;
+static Status solve_goals(Adjoint *adjoint, FemGradient *gradient) {
+  double *factors = adjoint->factors;
+  for (int g = 0; g < adjoint->def->goal_count; g++) {
+    TRY(solve_goal(adjoint, g, factors, gradient));
+    factors += adjoint->def->goals[g].term_count;
+  }
+  return STATUS_OK;
+}
+
+// All goals by one parameter.
+static Status differentiate(Adjoint *adjoint, int p, FemGradient *gradient) {
+  const FemGradientDef *def = adjoint->def;
+  FemChange *change = &adjoint->change;
+  const double *factors = adjoint->factors;
+  size_t values = values_of(adjoint);
+  TRY(fem_change_find(change, &adjoint->varied, &adjoint->tangent, &def->parameters[p], def->follows_choice));
+  for (int g = 0; g < def->goal_count; g++) {
+    const double *lambda = adjoint->multipliers + values * (size_t)g;
+    const double *slope = adjoint->slopes + values * (size_t)g;
+    double sum;
+    TRY(fem_goal_change(&def->goals[g], &adjoint->tangent, factors, change, &sum));
+    for (size_t i = 0; i < values; i++) sum += lambda[i] * change->force[i] + slope[i] * change->motion[i];
+    gradient->derivatives[g * def->parameter_count + p] = sum;
+    factors += def->goals[g].term_count;
+  }
+  return STATUS_OK;
+}
+
+static Status find(FemGradient *gradient, Adjoint *adjoint) {
+  FemEquilibrium *equilibrium = &adjoint->equilibrium;
+  FemSystem *system = equilibrium->system;
   double time = system->accepted.time, left;
   fem_system_gather(system, &system->accepted, adjoint->u, adjoint->step);
   TRY(settle(adjoint, time, &left));
-  TRY(fem_equilibrium_forces(&adjoint->equilibrium, time, adjoint->u, adjoint->force));
+  TRY(fem_equilibrium_forces(equilibrium, time, adjoint->u, adjoint->force));
   double largest = fem_equilibrium_largest(system->forces, 3 * system->model->vertex_count);
   gradient->unbalanced = largest > 0 ? left / largest : 0;
-  gradient->value = evaluate(system, &adjoint->state, quantity, adjoint->right);
-  TRY(solve(adjoint, time, &gradient->residual));
-  for (int p = 0; p < parameter_count; p++)
-    TRY(differentiate(adjoint, &parameters[p], &gradient->derivatives[p]));
+  TRY(fem_equilibrium_factorise(equilibrium, time, adjoint->u, 0));
+  TRY(fem_tangent_create(&adjoint->tangent, system, &adjoint->state));
+  TRY(fem_change_create(&adjoint->change, &adjoint->tangent));
+  TRY(solve_goals(adjoint, gradient));
+  for (int p = 0; p < adjoint->def->parameter_count; p++) TRY(differentiate(adjoint, p, gradient));
   return STATUS_OK;
 }
 
@@ -161,25 +222,43 @@ static Status check_body(const FemBodyDef *body) {
   return STATUS_OK;
 }
 
-Status fem_gradient_check(const FemModel *model) {
+static Status check_scene(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
   if (!scene->is_static)
     return status_fail(STATUS_INPUT, "the scene moves; gradients are of static scenes: time: {static: true}");
   if (model->free_count == 0) return status_fail(STATUS_INPUT, "nothing moves freely in the scene");
+  if (model->share) return status_fail(STATUS_INPUT, "gradients are found by one process: run tetlap alone");
   TRY(check_contact(scene));
   for (int b = 0; b < scene->body_count; b++) TRY(check_body(&scene->bodies[b]));
   return STATUS_OK;
 }
 
-Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemQuantity *quantity,
-                         const FemParameter *parameters, int parameter_count) {
-  *gradient = (FemGradient){.derivatives = memory_zeroed((size_t)parameter_count, sizeof(double))};
-  if (!gradient->derivatives) return status_no_memory("a gradient");
-  TRY(fem_gradient_check(system->model));
-  for (int p = 0; p < parameter_count; p++) TRY(fem_parameter_check(system->model, &parameters[p]));
+Status fem_gradient_check(const FemModel *model, const FemGradientDef *def) {
+  TRY(check_scene(model));
+  for (int g = 0; g < def->goal_count; g++)
+    for (int t = 0; t < def->goals[g].term_count; t++)
+      TRY(fem_quantity_check(model, &def->goals[g].terms[t].quantity));
+  for (int p = 0; p < def->parameter_count; p++) TRY(fem_parameter_check(model, &def->parameters[p]));
+  return STATUS_OK;
+}
+
+static Status allocate(FemGradient *gradient, const FemGradientDef *def) {
+  size_t goals = (size_t)def->goal_count;
+  *gradient =
+      (FemGradient){.values = memory_zeroed(goals, sizeof(double)),
+                    .residuals = memory_zeroed(goals, sizeof(double)),
+                    .mismatches = memory_zeroed(goals, sizeof(double)),
+                    .derivatives = memory_zeroed(goals * (size_t)def->parameter_count, sizeof(double))};
+  bool fits = gradient->values && gradient->residuals && gradient->mismatches && gradient->derivatives;
+  return fits ? STATUS_OK : status_no_memory("a gradient");
+}
+
+Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGradientDef *def) {
+  TRY(allocate(gradient, def));
+  TRY(fem_gradient_check(system->model, def));
   Adjoint adjoint;
-  Status status = create(&adjoint, system);
-  if (!status) status = find(gradient, &adjoint, quantity, parameters, parameter_count);
+  Status status = create(&adjoint, system, def);
+  if (!status) status = find(gradient, &adjoint);
   destroy(&adjoint);
   if (status != STATUS_RETRY) return status;
   char why[512];
@@ -189,6 +268,9 @@ Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemQuan
 }
 
 void fem_gradient_destroy(FemGradient *gradient) {
+  memory_free(gradient->values);
+  memory_free(gradient->residuals);
+  memory_free(gradient->mismatches);
   memory_free(gradient->derivatives);
   *gradient = (FemGradient){0};
 }

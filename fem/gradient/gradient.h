@@ -1,34 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Derivatives dg/dp of a quantity g at an equilibrium f(x, p) = 0 of a static scene without friction, for any
-// number of parameters p by one solve (the adjoint method):
+// Derivatives dg/dp at an equilibrium f(x, p) = 0 of a static scene without friction, for any number of
+// parameters by one solve for each g (the adjoint method):
 //
-//   K λ = ∂g/∂x,   dg/dp = ∂g/∂p + λ · ∂f/∂p,   K = −∂f/∂x, symmetric
+//   K λ = ∂g/∂x,   dg/dp = ∂g/∂p + λ · ∂f/∂p + (∂g/∂x_c − K_c λ) · ∂x_c/∂p,   K = −∂f/∂x, symmetric
 //
-// Where contact begins or ends exactly at the state, g has no derivative; the values are one-sided there.
+// with x the free coordinates, x_c the prescribed ones and K_c their rows. Where contact begins or ends
+// exactly at the state, g has no derivative; the values are one-sided there.
 #ifndef TETLAP_FEM_GRADIENT_GRADIENT_H
 #define TETLAP_FEM_GRADIENT_GRADIENT_H
 
 #include "fem/gradient/parameter.h"
+#include "fem/gradient/quantity.h"
 
-// The mean of a component of the displacement over all vertices of a body [m].
-typedef struct FemQuantity {
-  int body, component;
-} FemQuantity;
+typedef struct FemGradientDef {
+  const FemGoal *goals;           // borrowed                                 (goal_count)
+  const FemParameter *parameters; // borrowed                            (parameter_count)
+  int goal_count, parameter_count;
+  bool follows_choice; // a contact stiffness that is chosen changes with E and ν; else it is kept
+} FemGradientDef;
 
 typedef struct FemGradient {
-  double value;        // g
-  double unbalanced;   // largest force on an unknown, as a share of the largest on a vertex
-  double residual;     // |∂g/∂x − K λ| / |∂g/∂x|
-  double *derivatives; // dg/dp in the order of the parameters, owned   (parameter_count)
+  double unbalanced; // largest force on an unknown, as a share of the largest on a vertex
+  double *values;    // g, owned                                            (goal_count)
+  double *residuals; // |∂g/∂x − K λ| / |∂g/∂x|, owned                      (goal_count)
+  double *mismatches; // |K λ + ∂f/∂x λ| / |K λ|, ∂f/∂x λ by differences of forces, owned (goal_count)
+  double *derivatives; // dg/dp, owned                       (goal_count, parameter_count)
 } FemGradient;
 
 // STATUS_INPUT: what cannot be differentiated in this scene; the message says what and why.
-Status fem_gradient_check(const FemModel *model);
+Status fem_gradient_check(const FemModel *model, const FemGradientDef *def);
 // At the system's accepted state, which stays; the equilibrium is found more exactly first. STATUS_SOLVER: K
 // is not positive definite, so that the equilibrium is no stable one. Destroy the gradient also after a
 // failure.
-Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemQuantity *quantity,
-                         const FemParameter *parameters, int parameter_count);
+Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGradientDef *def);
 void fem_gradient_destroy(FemGradient *gradient); // also of a zeroed one
 
 #endif

@@ -1,108 +1,290 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/gradient/parameter.h"
 
-#include "base/memory.h"
-#include "fem/effect/gravity.h"
+#include <math.h>
+#include <stddef.h>
+
+#include "fem/gradient/varied.h"
+#include "fem/model/compliance.h"
+
+static const FemContactDef *contact_of(const FemModel *model) {
+  return &model->scene->contact;
+}
+
+const FemConstraintDef *fem_parameter_motion(const FemModel *model, const FemParameter *parameter) {
+  const FemSceneDef *scene = model->scene;
+  if (parameter->obstacle >= 0) return &scene->obstacles[parameter->obstacle].motion;
+  const FemBodyDef *body = &scene->bodies[parameter->body];
+  return parameter->item < body->driven_count ? &body->driven[parameter->item] : NULL;
+}
+
+int fem_parameter_pair(const FemModel *model, int a, int b) {
+  const FemContactDef *contact = contact_of(model);
+  int found = -1;
+  for (int i = 0; i < contact->pair_count; i++) {
+    const FemContactPairDef *pair = &contact->pairs[i];
+    int first = fem_compliance_party(model, pair->names[0]);
+    int second = fem_compliance_party(model, pair->names[1]);
+    bool is_theirs = (first == a && second == b) || (first == b && second == a);
+    if (is_theirs && (pair->stiffness > 0 || pair->law.law.kind != CONTACT_LAW_LINEAR)) found = i;
+  }
+  return found;
+}
+
+// ---- What has a derivative.
 
 static Status check_stiffness(const FemModel *model) {
-  const FemContactDef *contact = &model->scene->contact;
+  const FemContactDef *contact = contact_of(model);
   if (!contact->is_on) return status_fail(STATUS_INPUT, "contact.stiffness: the scene has no contact");
-  if (contact->law.law.kind != CONTACT_LAW_LINEAR)
-    return status_fail(STATUS_INPUT, "contact.stiffness does not act: contact.law stands in its place");
-  if (contact->stiffness == 0)
+  if (contact->law.law.kind == CONTACT_LAW_LINEAR && contact->stiffness == 0)
     return status_fail(STATUS_INPUT, "contact.stiffness is chosen from the bodies: write its value into the "
                                      "scene (`tetlap check` says it) for a derivative by it");
-  for (int i = 0; i < contact->pair_count; i++)
-    if (contact->pairs[i].stiffness > 0 || contact->pairs[i].law.law.kind != CONTACT_LAW_LINEAR)
-      return status_fail(STATUS_INPUT,
-                         "contact.stiffness: contact.pairs[%d] has its own stiffness or law, which no "
-                         "derivative is known by",
-                         i);
   return STATUS_OK;
 }
 
-static Status check_young(const FemModel *model, int body) {
-  const FemModelBody *at = &model->bodies[body];
-  if (at->material.fibre_stiffness > 0)
-    return status_fail(STATUS_INPUT, "bodies.%s.material.young: a body with fibres has no derivative by it",
-                       at->name);
-  if (model->scene->contact.is_on && model->scene->contact.stiffness == 0)
+static Status check_pair(const FemModel *model, const FemParameter *parameter) {
+  const FemContactDef *contact = contact_of(model);
+  if (!contact->is_on || parameter->item >= contact->pair_count)
+    return status_fail(STATUS_INPUT, "contact.pairs[%d].stiffness: there are %d pairs", parameter->item,
+                       contact->is_on ? contact->pair_count : 0);
+  if (contact->pairs[parameter->item].stiffness > 0) return STATUS_OK;
+  return status_fail(STATUS_INPUT, "contact.pairs[%d] has no stiffness of its own", parameter->item);
+}
+
+static Status check_load(const FemModel *model, const FemParameter *parameter) {
+  const FemBodyDef *body = &model->scene->bodies[parameter->body];
+  if (parameter->item >= body->load_count)
+    return status_fail(STATUS_INPUT, "body '%s' has %d loads, no loads[%d]", body->name, body->load_count,
+                       parameter->item);
+  const FemLoadDef *load = &body->loads[parameter->item];
+  const double *v = load->vector;
+  bool is_given = load->kind == FEM_LOAD_PRESSURE ? load->pressure != 0 : v[0] != 0 || v[1] != 0 || v[2] != 0;
+  if (load->kind == FEM_LOAD_EXTERNAL)
+    return status_fail(STATUS_INPUT, "body '%s', loads[%d] is set from outside", body->name, parameter->item);
+  if (is_given) return STATUS_OK;
+  return status_fail(STATUS_INPUT,
+                     "body '%s', loads[%d] is zero, which does not tell where it would act: give it a value",
+                     body->name, parameter->item);
+}
+
+static Status check_motion(const FemModel *model, const FemParameter *parameter) {
+  const FemConstraintDef *motion = fem_parameter_motion(model, parameter);
+  if (!motion)
+    return status_fail(STATUS_INPUT, "body '%s' has %d driven entries, no driven[%d]",
+                       model->scene->bodies[parameter->body].name,
+                       model->scene->bodies[parameter->body].driven_count, parameter->item);
+  if (motion->is_external) return status_fail(STATUS_INPUT, "the motion is set from outside");
+  if (parameter->kind == FEM_PARAMETER_SPIN && motion->spin == 0)
+    return status_fail(STATUS_INPUT, "the motion has no spin");
+  if (parameter->kind == FEM_PARAMETER_TABLE &&
+      (parameter->row >= motion->table_count || parameter->component < 0))
     return status_fail(STATUS_INPUT,
-                       "bodies.%s.material.young: contact.stiffness is chosen from it; write its value into "
-                       "the scene (`tetlap check` says it) for a derivative at fixed stiffness",
-                       at->name);
+                       "the motion's table has %d rows of [t, dx, dy, dz]; there are derivatives by the "
+                       "displacements",
+                       motion->table_count);
+  bool oscillates = parameter->kind == FEM_PARAMETER_AMPLITUDE || parameter->kind == FEM_PARAMETER_FREQUENCY;
+  if (oscillates && !(motion->frequency > 0))
+    return status_fail(STATUS_INPUT, "the motion does not oscillate: it has no frequency");
+  return STATUS_OK;
+}
+
+static Status check_material(const FemModel *model, const FemParameter *parameter) {
+  const FemModelBody *body = &model->bodies[parameter->body];
+  const FemMaterial *material = &body->material;
+  if (parameter->kind == FEM_PARAMETER_FIBRE && !(material->fibre_stiffness > 0))
+    return status_fail(STATUS_INPUT, "body '%s' has no fibres", body->name);
+  if (parameter->kind == FEM_PARAMETER_OGDEN_SHARE && material->exponents[parameter->row] == 0)
+    return status_fail(STATUS_INPUT, "body '%s': the exponent of this share is 0", body->name);
+  if (parameter->kind == FEM_PARAMETER_POISSON && fem_varied_is_kink(body))
+    return status_fail(
+        STATUS_INPUT,
+        "body '%s': there is no derivative by ν just here, where these elements begin to share "
+        "their volume change; take another ν, as %.9g",
+        body->name, material->poisson + 1e-4);
   return STATUS_OK;
 }
 
 Status fem_parameter_check(const FemModel *model, const FemParameter *parameter) {
   switch (parameter->kind) {
   case FEM_PARAMETER_YOUNG:
-    return check_young(model, parameter->body);
+  case FEM_PARAMETER_POISSON:
+  case FEM_PARAMETER_MOONEY:
+  case FEM_PARAMETER_OGDEN_EXPONENT:
+  case FEM_PARAMETER_OGDEN_SHARE:
+  case FEM_PARAMETER_FIBRE:
+    return check_material(model, parameter);
+  case FEM_PARAMETER_LOAD:
+    return check_load(model, parameter);
+  case FEM_PARAMETER_VELOCITY:
+  case FEM_PARAMETER_AMPLITUDE:
+  case FEM_PARAMETER_FREQUENCY:
+  case FEM_PARAMETER_SPIN:
+  case FEM_PARAMETER_TABLE:
+    return check_motion(model, parameter);
   case FEM_PARAMETER_CONTACT_STIFFNESS:
     return check_stiffness(model);
+  case FEM_PARAMETER_PAIR_STIFFNESS:
+    return check_pair(model, parameter);
   case FEM_PARAMETER_DENSITY:
   case FEM_PARAMETER_GRAVITY:
-    break;
-  }
-  if (model->scene->has_gravity) return STATUS_OK;
-  return status_fail(STATUS_INPUT, "%s: the scene has no effects.gravity",
-                     parameter->kind == FEM_PARAMETER_DENSITY ? "a density does not act" : "gravity");
-}
-
-double fem_parameter_value(const FemModel *model, const FemParameter *parameter) {
-  const FemMaterial *material = &model->bodies[parameter->body].material;
-  switch (parameter->kind) {
-  case FEM_PARAMETER_YOUNG:
-    return material->young;
-  case FEM_PARAMETER_DENSITY:
-    return material->density;
-  case FEM_PARAMETER_GRAVITY:
-    return model->scene->gravity[parameter->component];
-  case FEM_PARAMETER_CONTACT_STIFFNESS:
-    return model->scene->contact.stiffness;
-  }
-  return 0;
-}
-
-// force += scale · what the effect gives, on vertices from `begin` to before `end`.
-static Status add_scaled(FemSystem *system, const FemEffectOps *effect, const FemState *state, double scale,
-                         int begin, int end, double *force) {
-  void *self = fem_system_effect(system, effect);
-  if (!self) return STATUS_OK;
-  double *whole = memory_zeroed(3 * (size_t)system->model->vertex_count, sizeof *whole);
-  if (!whole) return status_no_memory("a derivative of forces");
-  Status status = effect->add_force(self, state, whole);
-  for (size_t i = 3 * (size_t)begin; !status && i < 3 * (size_t)end; i++) force[i] += scale * whole[i];
-  memory_free(whole);
-  return status;
-}
-
-static void add_weight(const FemModel *model, const double by[3], int begin, int end, double *force) {
-  for (int a = begin; a < end; a++)
-    for (int c = 0; c < 3; c++) force[3 * (size_t)a + (size_t)c] += model->mass[a] * by[c];
-}
-
-Status fem_parameter_add_force(const FemParameter *parameter, FemSystem *system, const FemState *state,
-                               double *force) {
-  const FemModel *model = system->model;
-  const FemModelBody *body = &model->bodies[parameter->body];
-  int begin = body->vertex_begin, end = body->vertex_end;
-  double value = fem_parameter_value(model, parameter), share = fem_gravity_share(model, state->time);
-  double by[3] = {0};
-  switch (parameter->kind) {
-  case FEM_PARAMETER_YOUNG:
-    TRY(add_scaled(system, &fem_effect_elasticity, state, 1 / value, begin, end, force));
-    return add_scaled(system, &fem_effect_volume, state, 1 / value, begin, end, force);
-  case FEM_PARAMETER_CONTACT_STIFFNESS:
-    return add_scaled(system, &fem_effect_contact, state, 1 / value, 0, model->vertex_count, force);
-  case FEM_PARAMETER_DENSITY:
-    for (int c = 0; c < 3; c++) by[c] = share * model->scene->gravity[c] / value;
-    add_weight(model, by, begin, end, force);
-    break;
-  case FEM_PARAMETER_GRAVITY:
-    by[parameter->component] = share;
-    add_weight(model, by, 0, model->vertex_count, force);
+  case FEM_PARAMETER_PLACE:
+  case FEM_PARAMETER_MOTION_ALONE:
     break;
   }
   return STATUS_OK;
+}
+
+// ---- What does not act.
+
+static const char *idle_stiffness(const FemModel *model, const FemParameter *parameter) {
+  const FemContactDef *contact = contact_of(model);
+  const FemContactLawDef *law = &contact->law;
+  if (parameter->kind == FEM_PARAMETER_PAIR_STIFFNESS) law = &contact->pairs[parameter->item].law;
+  return law->law.kind == CONTACT_LAW_LINEAR ? NULL : "a pressure law stands in its place";
+}
+
+static const char *idle_of_law(const FemModel *model, const FemParameter *parameter, FemMaterialLaw law) {
+  if (model->bodies[parameter->body].material.law == law) return NULL;
+  return law == FEM_MATERIAL_OGDEN ? "the body's law is not ogden" : "the body's law is not mooney_rivlin";
+}
+
+static const char *idle_density(const FemModel *model) {
+  const double *g = model->scene->gravity;
+  bool is_heavy = model->scene->has_gravity && (g[0] != 0 || g[1] != 0 || g[2] != 0);
+  return is_heavy ? NULL : "a density acts by gravity alone, which the scene does not have";
+}
+
+const char *fem_parameter_idle(const FemModel *model, const FemParameter *parameter) {
+  switch (parameter->kind) {
+  case FEM_PARAMETER_DENSITY:
+    return idle_density(model);
+  case FEM_PARAMETER_CONTACT_STIFFNESS:
+  case FEM_PARAMETER_PAIR_STIFFNESS:
+    return idle_stiffness(model, parameter);
+  case FEM_PARAMETER_MOONEY:
+    return idle_of_law(model, parameter, FEM_MATERIAL_MOONEY_RIVLIN);
+  case FEM_PARAMETER_OGDEN_EXPONENT:
+    if (model->bodies[parameter->body].material.shares[parameter->row] == 0) return "the term's share is 0";
+    return idle_of_law(model, parameter, FEM_MATERIAL_OGDEN);
+  case FEM_PARAMETER_OGDEN_SHARE:
+    return idle_of_law(model, parameter, FEM_MATERIAL_OGDEN);
+  case FEM_PARAMETER_MOTION_ALONE:
+    return "it acts in motions alone, and the scene is static";
+  default:
+    return NULL;
+  }
+}
+
+// ---- Values and units.
+
+static double value_of_load(const FemLoadDef *load, int component) {
+  return load->kind == FEM_LOAD_PRESSURE ? load->pressure : load->vector[component];
+}
+
+static double place_of(const FemModel *model, const FemParameter *parameter) {
+  const FemSceneDef *scene = model->scene;
+  int c = parameter->component;
+  if (parameter->obstacle < 0) return scene->bodies[parameter->body].placement.translate[c];
+  const FemObstacleDef *obstacle = &scene->obstacles[parameter->obstacle];
+  return obstacle->kind == FEM_OBSTACLE_MESH ? obstacle->placement.translate[c] : obstacle->point[c];
+}
+
+static double value_of_material(const FemMaterial *material, const FemParameter *parameter) {
+  switch (parameter->kind) {
+  case FEM_PARAMETER_YOUNG:
+    return material->young;
+  case FEM_PARAMETER_POISSON:
+    return material->poisson;
+  case FEM_PARAMETER_MOONEY:
+    return material->mooney;
+  case FEM_PARAMETER_OGDEN_EXPONENT:
+    return material->exponents[parameter->row];
+  case FEM_PARAMETER_OGDEN_SHARE:
+    return material->shares[parameter->row];
+  case FEM_PARAMETER_FIBRE:
+    return material->fibre_stiffness;
+  default:
+    return material->density;
+  }
+}
+
+static double value_of_motion(const FemConstraintDef *motion, const FemParameter *parameter) {
+  switch (parameter->kind) {
+  case FEM_PARAMETER_VELOCITY:
+    return motion->velocity[parameter->component];
+  case FEM_PARAMETER_AMPLITUDE:
+    return motion->amplitude[parameter->component];
+  case FEM_PARAMETER_FREQUENCY:
+    return motion->frequency;
+  case FEM_PARAMETER_SPIN:
+    return motion->spin;
+  default:
+    return motion->table[4 * parameter->row + 1 + parameter->component];
+  }
+}
+
+double fem_parameter_value(const FemModel *model, const FemParameter *parameter) {
+  switch (parameter->kind) {
+  case FEM_PARAMETER_GRAVITY:
+    return model->scene->has_gravity ? model->scene->gravity[parameter->component] : 0;
+  case FEM_PARAMETER_LOAD:
+    return value_of_load(&model->scene->bodies[parameter->body].loads[parameter->item], parameter->component);
+  case FEM_PARAMETER_VELOCITY:
+  case FEM_PARAMETER_AMPLITUDE:
+  case FEM_PARAMETER_FREQUENCY:
+  case FEM_PARAMETER_SPIN:
+  case FEM_PARAMETER_TABLE:
+    return value_of_motion(fem_parameter_motion(model, parameter), parameter);
+  case FEM_PARAMETER_PLACE:
+    return place_of(model, parameter);
+  case FEM_PARAMETER_CONTACT_STIFFNESS:
+    return contact_of(model)->stiffness;
+  case FEM_PARAMETER_PAIR_STIFFNESS:
+    return contact_of(model)->pairs[parameter->item].stiffness;
+  case FEM_PARAMETER_MOTION_ALONE:
+    return NAN;
+  default:
+    return value_of_material(&model->bodies[parameter->body].material, parameter);
+  }
+}
+
+static const char *unit_of_load(FemLoadKind kind) {
+  switch (kind) {
+  case FEM_LOAD_BODY_FORCE:
+    return "N/m³";
+  case FEM_LOAD_TRACTION:
+  case FEM_LOAD_PRESSURE:
+    return "Pa";
+  default:
+    return "N";
+  }
+}
+
+const char *fem_parameter_unit(const FemModel *model, const FemParameter *parameter) {
+  switch (parameter->kind) {
+  case FEM_PARAMETER_YOUNG:
+  case FEM_PARAMETER_FIBRE:
+    return "Pa";
+  case FEM_PARAMETER_DENSITY:
+    return "kg/m³";
+  case FEM_PARAMETER_GRAVITY:
+    return "m/s²";
+  case FEM_PARAMETER_LOAD:
+    return unit_of_load(model->scene->bodies[parameter->body].loads[parameter->item].kind);
+  case FEM_PARAMETER_VELOCITY:
+    return "m/s";
+  case FEM_PARAMETER_AMPLITUDE:
+  case FEM_PARAMETER_TABLE:
+  case FEM_PARAMETER_PLACE:
+    return "m";
+  case FEM_PARAMETER_FREQUENCY:
+    return "Hz";
+  case FEM_PARAMETER_SPIN:
+    return "rad/s";
+  case FEM_PARAMETER_CONTACT_STIFFNESS:
+  case FEM_PARAMETER_PAIR_STIFFNESS:
+    return "Pa/m";
+  default:
+    return "";
+  }
 }

@@ -1,32 +1,50 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parameters of a scene, and what they do to the forces at fixed positions: ∂f/∂p, analytic. The elastic
-// force of a body is proportional to E at fixed ν in every law without fibres, the force of contact to κ
-// where the scene gives one for all, weight to density and to g.
+// Parameters of a static scene: which there are, their values, and which of them do not act.
 #ifndef TETLAP_FEM_GRADIENT_PARAMETER_H
 #define TETLAP_FEM_GRADIENT_PARAMETER_H
 
-#include "fem/effect/system.h"
+#include "fem/model/model.h"
 
 typedef enum FemParameterKind {
-  FEM_PARAMETER_YOUNG,             // E of a body [Pa]
+  FEM_PARAMETER_YOUNG,             // E of a body at fixed ν [Pa]
+  FEM_PARAMETER_POISSON,           // ν of a body at fixed E
+  FEM_PARAMETER_MOONEY,            // of mooney_rivlin: the second invariant's share
+  FEM_PARAMETER_OGDEN_EXPONENT,    // of ogden, α of a term (`row`)
+  FEM_PARAMETER_OGDEN_SHARE,       // of ogden, the share of a term (`row`) before it is normalised
+  FEM_PARAMETER_FIBRE,             // modulus of a body's fibres [Pa]
   FEM_PARAMETER_DENSITY,           // of a body [kg/m³]
   FEM_PARAMETER_GRAVITY,           // a component [m/s²]
-  FEM_PARAMETER_CONTACT_STIFFNESS, // κ as the scene gives it
+  FEM_PARAMETER_LOAD,              // loads[item] of a body: a component of its vector, or its pressure
+  FEM_PARAMETER_VELOCITY,          // a component of a prescribed motion's velocity [m/s]
+  FEM_PARAMETER_AMPLITUDE,         // of its amplitude [m]
+  FEM_PARAMETER_FREQUENCY,         // [Hz]
+  FEM_PARAMETER_SPIN,              // [rad/s]
+  FEM_PARAMETER_TABLE,             // a displacement of its table, `component` of `row` [m]
+  FEM_PARAMETER_PLACE,             // a coordinate of where a body or an obstacle stands [m]
+  FEM_PARAMETER_CONTACT_STIFFNESS, // κ as the scene gives it for all pairs
+  FEM_PARAMETER_PAIR_STIFFNESS,    // κ of contact.pairs[item]
+  FEM_PARAMETER_MOTION_ALONE,      // what acts in motions alone: damping, viscosities, initial velocities
 } FemParameterKind;
 
 typedef struct FemParameter {
   FemParameterKind kind;
-  int body;      // of E and density
-  int component; // of gravity
+  int body;     // of the scene's bodies; −1: none
+  int obstacle; // of the scene's obstacles; −1: none
+  int item;     // of the body's loads or driven entries, of the contact's pairs
+  int row, component;
 } FemParameter;
 
-// STATUS_INPUT: the scene does not give it, or forces are not known to be proportional to it; the message
-// says why.
+// STATUS_INPUT: the scene does not give it, or no derivative is known; the message says why.
 Status fem_parameter_check(const FemModel *model, const FemParameter *parameter);
-// As the scene gives it.
+// Why a parameter that was checked changes nothing, so that its derivatives are 0; NULL: it may.
+const char *fem_parameter_idle(const FemModel *model, const FemParameter *parameter);
+// As the scene gives it; NaN: of FEM_PARAMETER_MOTION_ALONE.
 double fem_parameter_value(const FemModel *model, const FemParameter *parameter);
-// force += ∂f/∂p at the state (vertex_count, 3) [N per unit of p]. The parameter must have been checked.
-Status fem_parameter_add_force(const FemParameter *parameter, FemSystem *system, const FemState *state,
-                               double *force);
+const char *fem_parameter_unit(const FemModel *model, const FemParameter *parameter);
+
+// The prescribed motion that a parameter is of: driven[item] of its body, or its obstacle's.
+const FemConstraintDef *fem_parameter_motion(const FemModel *model, const FemParameter *parameter);
+// The entry of contact.pairs that gives two parties their stiffness or law, −1: none does.
+int fem_parameter_pair(const FemModel *model, int a, int b);
 
 #endif

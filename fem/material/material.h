@@ -66,9 +66,13 @@ void fem_material_cauchy(FemMaterialLaw law, const double F[9], const double P[9
 double fem_material_volume(FemMaterialLaw law, const double F[9], double gradient[9]);
 void fem_material_volume_curvature(FemMaterialLaw law, const double F[9], double curvature[81]);
 
-// The same material with another first Lamé parameter λ and the same μ.
+// The same material with other Lamé parameters; with another λ and the same μ.
+FemMaterial fem_material_with_lame(const FemMaterial *material, FemLame lame);
 FemMaterial fem_material_with_lambda(const FemMaterial *material, double lambda);
-// What an element of a body keeps for itself.
+// λ_e / μ at most of what a nodal element keeps for itself: that of ν = 1/4. Measured, a cantilever of 10
+// cubes through its thickness at ν = 0.499: 0.907 of beam theory with 2, 0.916 with 1, 0.926 with 0; at 0
+// nothing but μ is left against pressures that alternate.
+#define FEM_MATERIAL_LARGEST_LOCAL_RATIO 1.0
 FemMaterial fem_material_local(const FemMaterial *material);
 
 // The stress is linear in F: the law linear.

@@ -7,27 +7,37 @@
 
 #include "app/cli/parse.h"
 #include "app/command/commands.h"
+#include "app/gradient/goal.h"
+#include "app/gradient/parameter.h"
 #include "app/job/job.h"
 #include "app/table/table.h"
 #include "base/log.h"
-#include "base/text.h"
 
-enum { MAX_PARAMETERS = 64 };
+enum { MAX_GOALS = 64, MAX_PARAMETERS = 64 };
 
 typedef struct Options {
   AppJobOptions job;
-  const char *of, *by[MAX_PARAMETERS];
-  int by_count;
+  const char *of[MAX_GOALS], *by[MAX_PARAMETERS];
+  int of_count, by_count;
+  bool is_total;
 } Options;
 
 static const AppOption option_table[] = {
-    {"of", 0, "displacement:BODY:AXIS", "Differentiate the mean displacement of a body along x, y or z", 1,
-     CLI_TEXT, CLI_TO(Options, of)},
+    {"of", 0, "QUANTITY",
+     "Differentiate it: displacement:BODY:AXIS, probe:NAME:AXIS, position:BODY:VERTEX:AXIS, "
+     "force:BODY[:OTHER]:AXIS, moment:BODY[:OTHER]:AXIS, reaction:BODY:fixed[N]:AXIS, energy[:KIND], "
+     "sum:FILE, misfit:FILE; may be repeated",
+     1, CLI_REPEATED, CLI_TO(Options, of), .most = MAX_GOALS, .example = "--of",
+     .count_offset = offsetof(Options, of_count)},
     {"by", 0, "KEY,...",
-     "By these keys of the scene: bodies.NAME.material.young, bodies.NAME.material.density, "
-     "contact.stiffness, effects.gravity[0] to [2]",
+     "By these keys of the scene: materials, loads, motions, places, contact.stiffness, effects.gravity[K]; "
+     "docs/gradients.md lists them",
      1, CLI_LIST, CLI_TO(Options, by), .most = MAX_PARAMETERS, .example = "contact.stiffness",
      .count_offset = offsetof(Options, by_count)},
+    {"total", 0, NULL,
+     "Let a contact stiffness that the scene does not give change with E and ν as it is chosen from them "
+     "(default: it is kept)",
+     1, CLI_FLAG, CLI_TO(Options, is_total)},
     {"set", 's', "KEY=VALUE", "Replace a value of the scene; may be repeated", 1, CLI_REPEATED,
      CLI_TO(Options, job.overrides), .most = APP_MAX_OVERRIDES, .example = "--set",
      .count_offset = offsetof(Options, job.override_count)},
@@ -37,7 +47,7 @@ static const AppOption option_table[] = {
 };
 
 typedef struct Row {
-  const char *key, *unit;
+  const char *key, *unit, *idle;
   double value, derivative, share;
 } Row;
 
@@ -47,114 +57,84 @@ static const AppTableColumn columns[] = {
     {"unit", APP_TABLE_TEXT, offsetof(Row, unit), "unit", NULL},
     {"derivative", APP_TABLE_NUMBER, offsetof(Row, derivative), "dg/dp", NULL},
     {"share", APP_TABLE_NUMBER, offsetof(Row, share), "p dg/dp / g", NULL},
+    {"does_not_act", APP_TABLE_TEXT, offsetof(Row, idle), "does not act", NULL},
 };
 
 typedef struct Asked {
-  FemQuantity quantity;
+  FemGoal goals[MAX_GOALS];
   FemParameter parameters[MAX_PARAMETERS];
-  int count;
+  FemGradientDef def;
   FemGradient gradient;
 } Asked;
-
-static Status find_body(const FemSceneDef *scene, const char *name, size_t length, int *body) {
-  char list[512] = "";
-  size_t used = 0;
-  for (int b = 0; b < scene->body_count; b++) {
-    const char *known = scene->bodies[b].name;
-    *body = b;
-    if (strlen(known) == length && memcmp(known, name, length) == 0) return STATUS_OK;
-    text_append(list, sizeof list, &used, "%s%s", b ? ", " : "", known);
-  }
-  return status_fail(STATUS_INPUT, "no body is called '%.*s'; there are %s", (int)length, name, list);
-}
-
-static Status parse_quantity(const FemSceneDef *scene, const char *text, FemQuantity *quantity) {
-  static const char prefix[] = "displacement:";
-  const char *last = strrchr(text, ':');
-  bool has_axis = last && last[1] && !last[2] && strchr("xyz", last[1]);
-  const char *name = text + sizeof prefix - 1;
-  if (strncmp(text, prefix, sizeof prefix - 1) != 0 || !has_axis || last < name)
-    return status_fail(STATUS_INPUT, "--of: '%s' is not displacement:BODY:AXIS, as displacement:block:z",
-                       text);
-  quantity->component = last[1] - 'x';
-  return status_prefix(find_body(scene, name, (size_t)(last - name), &quantity->body), "--of");
-}
-
-// bodies.NAME and `ending`.
-static bool is_of_body(const char *key, const char *ending) {
-  size_t length = strlen(key), tail = strlen(ending), head = strlen("bodies.");
-  return length > head + tail && strncmp(key, "bodies.", head) == 0 && !strcmp(key + length - tail, ending);
-}
-
-static Status parse_parameter(const FemSceneDef *scene, const char *key, FemParameter *parameter) {
-  static const char *const endings[] = {".material.young", ".material.density"};
-  static const FemParameterKind kinds[] = {FEM_PARAMETER_YOUNG, FEM_PARAMETER_DENSITY};
-  static const char *const gravity[] = {"effects.gravity[0]", "effects.gravity[1]", "effects.gravity[2]"};
-  *parameter = (FemParameter){.kind = FEM_PARAMETER_CONTACT_STIFFNESS};
-  if (strcmp(key, "contact.stiffness") == 0) return STATUS_OK;
-  for (int c = 0; c < 3; c++)
-    if (strcmp(key, gravity[c]) == 0) {
-      *parameter = (FemParameter){.kind = FEM_PARAMETER_GRAVITY, .component = c};
-      return STATUS_OK;
-    }
-  const char *name = key + strlen("bodies.");
-  for (int k = 0; k < 2; k++)
-    if (is_of_body(key, endings[k])) {
-      parameter->kind = kinds[k];
-      return status_prefix(find_body(scene, name, strlen(name) - strlen(endings[k]), &parameter->body),
-                           "--by %s", key);
-    }
-  return status_fail(STATUS_INPUT,
-                     "--by: no gradient by '%s'; there are bodies.NAME.material.young, "
-                     "bodies.NAME.material.density, contact.stiffness, effects.gravity[0] to [2]",
-                     key);
-}
 
 static Status at_end(void *observer, const FemRunProgress *progress) {
   Asked *asked = observer;
   if (progress->time < progress->end) return STATUS_OK;
   fem_gradient_destroy(&asked->gradient);
-  return fem_gradient_find(&asked->gradient, progress->system, &asked->quantity, asked->parameters,
-                           asked->count);
+  return fem_gradient_find(&asked->gradient, progress->system, &asked->def);
 }
 
-static const char *unit_of(FemParameterKind kind) {
-  switch (kind) {
-  case FEM_PARAMETER_YOUNG:
-    return "Pa";
-  case FEM_PARAMETER_DENSITY:
-    return "kg/m³";
-  case FEM_PARAMETER_GRAVITY:
-    return "m/s²";
-  case FEM_PARAMETER_CONTACT_STIFFNESS:
-    return "Pa/m";
-  }
-  return "";
+// Of contact, what its stiffness does.
+static const char *stiffness_of(const FemModel *model, bool is_total) {
+  const FemContactDef *contact = &model->scene->contact;
+  if (!contact->is_on) return "none";
+  if (contact->stiffness > 0 || contact->law.law.kind != CONTACT_LAW_LINEAR) return "given";
+  return is_total ? "follows" : "kept";
 }
 
-static Status print(const Options *options, const FemModel *model, const Asked *asked) {
+static void fill_rows(const Options *options, const FemModel *model, const Asked *asked, int g, Row *rows) {
   const FemGradient *gradient = &asked->gradient;
+  double whole = gradient->values[g];
+  for (int p = 0; p < options->by_count; p++) {
+    const FemParameter *parameter = &asked->parameters[p];
+    double value = fem_parameter_value(model, parameter);
+    double derivative = gradient->derivatives[g * options->by_count + p];
+    rows[p] = (Row){options->by[p],
+                    fem_parameter_unit(model, parameter),
+                    fem_parameter_idle(model, parameter),
+                    value,
+                    derivative,
+                    whole != 0 ? value * derivative / whole : NAN};
+  }
+}
+
+static Status print_plain(const Options *options, const FemModel *model, const Asked *asked) {
+  const FemGradient *gradient = &asked->gradient;
+  if (strcmp(stiffness_of(model, options->is_total), "kept") == 0)
+    printf("contact.stiffness, which is chosen, is kept as it is; --total lets it follow E and ν\n");
+  for (int g = 0; g < options->of_count; g++) {
+    Row rows[MAX_PARAMETERS];
+    AppTablePart part = {columns, sizeof columns / sizeof *columns, rows, sizeof *rows};
+    fill_rows(options, model, asked, g, rows);
+    printf("g = %s = %.10g %s; residual of the adjoint %.1e, of the forces %.1e, of the matrix %.1e\n",
+           options->of[g], gradient->values[g], app_gradient_unit(&asked->goals[g], options->of[g]),
+           gradient->residuals[g], gradient->unbalanced, gradient->mismatches[g]);
+    TRY(app_table_print(&(AppTable){&part, 1, options->by_count}, APP_TABLE_PLAIN, stdout));
+  }
+  return STATUS_OK;
+}
+
+static void record_goal(const Options *options, const FemModel *model, const Asked *asked, int g,
+                        Record *record) {
   Row rows[MAX_PARAMETERS];
-  for (int p = 0; p < asked->count; p++) {
-    double value = fem_parameter_value(model, &asked->parameters[p]), derivative = gradient->derivatives[p];
-    rows[p] = (Row){options->by[p], unit_of(asked->parameters[p].kind), value, derivative,
-                    gradient->value != 0 ? value * derivative / gradient->value : NAN};
-  }
   AppTablePart part = {columns, sizeof columns / sizeof *columns, rows, sizeof *rows};
-  if (!options->job.is_json) {
-    printf("g = %s = %.10g m; residual of the adjoint %.1e, of the forces %.1e\n", options->of,
-           gradient->value, gradient->residual, gradient->unbalanced);
-    return app_table_print(&(AppTable){&part, 1, asked->count}, APP_TABLE_PLAIN, stdout);
-  }
+  fill_rows(options, model, asked, g, rows);
+  record_text(record, "unit", app_gradient_unit(&asked->goals[g], options->of[g]));
+  record_number(record, "value", asked->gradient.values[g]);
+  record_number(record, "adjoint_residual", asked->gradient.residuals[g]);
+  record_number(record, "matrix_residual", asked->gradient.mismatches[g]);
+  Record *by = record_child(record, "by");
+  for (int p = 0; p < options->by_count; p++) app_table_record(&part, p, record_child(by, options->by[p]));
+}
+
+static Status print_json(const Options *options, const FemModel *model, const Asked *asked) {
   Record *record = record_new();
   if (!record) return status_no_memory("a gradient");
-  record_text(record, "quantity", options->of);
-  record_text(record, "unit", "m");
-  record_number(record, "value", gradient->value);
-  record_number(record, "adjoint_residual", gradient->residual);
-  record_number(record, "force_residual", gradient->unbalanced);
-  Record *by = record_child(record, "by");
-  for (int p = 0; p < asked->count; p++) app_table_record(&part, p, record_child(by, options->by[p]));
+  record_text(record, "contact_stiffness", stiffness_of(model, options->is_total));
+  record_number(record, "force_residual", asked->gradient.unbalanced);
+  Record *of = record_child(record, "of");
+  for (int g = 0; g < options->of_count; g++)
+    record_goal(options, model, asked, g, record_child(of, options->of[g]));
   Status status = record_print(record, stdout);
   record_destroy(record);
   return status;
@@ -162,14 +142,16 @@ static Status print(const Options *options, const FemModel *model, const Asked *
 
 // All that can be refused is refused before the run.
 static Status prepare(const Options *options, const FemModel *model, Asked *asked) {
-  TRY(parse_quantity(model->scene, options->of, &asked->quantity));
-  TRY(fem_gradient_check(model));
-  for (asked->count = 0; asked->count < options->by_count; asked->count++) {
-    FemParameter *parameter = &asked->parameters[asked->count];
-    TRY(parse_parameter(model->scene, options->by[asked->count], parameter));
-    TRY(fem_parameter_check(model, parameter));
-  }
-  return STATUS_OK;
+  asked->def = (FemGradientDef){.goals = asked->goals,
+                                .parameters = asked->parameters,
+                                .goal_count = options->of_count,
+                                .parameter_count = options->by_count,
+                                .follows_choice = options->is_total};
+  for (int g = 0; g < options->of_count; g++)
+    TRY(status_prefix(app_gradient_read_goal(model, options->of[g], &asked->goals[g]), "--of"));
+  for (int p = 0; p < options->by_count; p++)
+    TRY(status_prefix(app_gradient_read_parameter(model, options->by[p], &asked->parameters[p]), "--by"));
+  return fem_gradient_check(model, &asked->def);
 }
 
 static Status differentiate(const Options *options, const FemModel *model) {
@@ -180,15 +162,17 @@ static Status differentiate(const Options *options, const FemModel *model) {
   if (!status) status = fem_run(model, &run, &result);
   if (!status && !asked.gradient.derivatives)
     status = status_fail(STATUS_SOLVER, "the run ended before time.end: no gradient");
-  if (!status) status = print(options, model, &asked);
+  if (!status)
+    status = options->job.is_json ? print_json(options, model, &asked) : print_plain(options, model, &asked);
   fem_run_result_destroy(&result);
   fem_gradient_destroy(&asked.gradient);
+  for (int g = 0; g < options->of_count; g++) app_gradient_destroy_goal(&asked.goals[g]);
   return status;
 }
 
 static void check(struct argp_state *state, void *given) {
   const Options *options = given;
-  if (!options->of) argp_error(state, "say of what, as in --of displacement:block:z");
+  if (!options->of_count) argp_error(state, "say of what, as in --of displacement:block:z");
   if (!options->by_count) argp_error(state, "say by what, as in --by contact.stiffness");
 }
 
@@ -212,12 +196,11 @@ const AppCommand app_command_gradient = {
     .arguments = &(const AppArguments){"SCENE", offsetof(Options, job.scene_path), 1,
                                        .missing = "name a scene file, as in examples/26_hertz.yaml",
                                        .excess = "one scene at a time; '%s' is the second"},
-    .doc =
-        "Run a static scene without friction to its end, and print the exact derivatives of a quantity g "
-        "there by "
-        "parameters p, all of them from one solve.\vThe share p dg/dp / g says by how many per cent g "
-        "changes with one per cent of p. Everything else is kept, contact.stiffness, too. docs/gradients.md "
-        "says what has a gradient.",
+    .doc = "Run a static scene without friction to its end, and print the exact derivatives of quantities g "
+           "there by parameters p, from one solve for each g.\vThe share p dg/dp / g says by how many per "
+           "cent g "
+           "changes with one per cent of p. Everything else is kept. docs/gradients.md says what has a "
+           "gradient.",
     .check = check,
     .run = run_command,
     .has_threads = true};

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/gradient/parameter.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/gradient/names.h"
+
+enum { MAX_NUMBERS = 3 };
+
+// A key of the scene, # a number.
+typedef struct Key {
+  const char *text;
+  FemParameterKind kind;
+  // Which of its numbers is the parameter's item, row, component; −1: none.
+  int item, row, component;
+} Key;
+
+static const Key body_keys[] = {
+    {"material.young", FEM_PARAMETER_YOUNG, -1, -1, -1},
+    {"material.poisson", FEM_PARAMETER_POISSON, -1, -1, -1},
+    {"material.density", FEM_PARAMETER_DENSITY, -1, -1, -1},
+    {"material.mooney", FEM_PARAMETER_MOONEY, -1, -1, -1},
+    {"material.ogden.exponents[#]", FEM_PARAMETER_OGDEN_EXPONENT, -1, 0, -1},
+    {"material.ogden.shares[#]", FEM_PARAMETER_OGDEN_SHARE, -1, 0, -1},
+    {"material.fibre.modulus", FEM_PARAMETER_FIBRE, -1, -1, -1},
+    {"material.damping", FEM_PARAMETER_MOTION_ALONE, -1, -1, -1},
+    {"material.viscosity", FEM_PARAMETER_MOTION_ALONE, -1, -1, -1},
+    {"material.bulk_viscosity", FEM_PARAMETER_MOTION_ALONE, -1, -1, -1},
+    {"place.translate[#]", FEM_PARAMETER_PLACE, -1, -1, 0},
+    {"loads[#].force[#]", FEM_PARAMETER_LOAD, 0, -1, 1},
+    {"loads[#].body_force[#]", FEM_PARAMETER_LOAD, 0, -1, 1},
+    {"loads[#].traction[#]", FEM_PARAMETER_LOAD, 0, -1, 1},
+    {"loads[#].pressure", FEM_PARAMETER_LOAD, 0, -1, -1},
+    {"driven[#].velocity[#]", FEM_PARAMETER_VELOCITY, 0, -1, 1},
+    {"driven[#].amplitude[#]", FEM_PARAMETER_AMPLITUDE, 0, -1, 1},
+    {"driven[#].frequency", FEM_PARAMETER_FREQUENCY, 0, -1, -1},
+    {"driven[#].spin", FEM_PARAMETER_SPIN, 0, -1, -1},
+    {"driven[#].table[#][#]", FEM_PARAMETER_TABLE, 0, 1, 2},
+};
+
+static const Key obstacle_keys[] = {
+    {"halfspace.point[#]", FEM_PARAMETER_PLACE, -1, -1, 0},
+    {"sphere.centre[#]", FEM_PARAMETER_PLACE, -1, -1, 0},
+    {"box.centre[#]", FEM_PARAMETER_PLACE, -1, -1, 0},
+    {"cylinder.centre[#]", FEM_PARAMETER_PLACE, -1, -1, 0},
+    {"place.translate[#]", FEM_PARAMETER_PLACE, -1, -1, 0},
+    {"velocity[#]", FEM_PARAMETER_VELOCITY, -1, -1, 0},
+    {"motion.velocity[#]", FEM_PARAMETER_VELOCITY, -1, -1, 0},
+    {"motion.amplitude[#]", FEM_PARAMETER_AMPLITUDE, -1, -1, 0},
+    {"motion.frequency", FEM_PARAMETER_FREQUENCY, -1, -1, -1},
+    {"motion.spin", FEM_PARAMETER_SPIN, -1, -1, -1},
+    {"motion.table[#][#]", FEM_PARAMETER_TABLE, -1, 0, 1},
+};
+
+static const Key scene_keys[] = {
+    {"contact.stiffness", FEM_PARAMETER_CONTACT_STIFFNESS, -1, -1, -1},
+    {"contact.pairs[#].stiffness", FEM_PARAMETER_PAIR_STIFFNESS, 0, -1, -1},
+    {"contact.viscosity", FEM_PARAMETER_MOTION_ALONE, -1, -1, -1},
+    {"effects.gravity[#]", FEM_PARAMETER_GRAVITY, -1, -1, 0},
+    {"effects.damping", FEM_PARAMETER_MOTION_ALONE, -1, -1, -1},
+};
+
+const char app_gradient_keys[] =
+    "bodies.NAME.material.{young, poisson, density, mooney, ogden.exponents[K], ogden.shares[K], "
+    "fibre.modulus}\n"
+    "bodies.NAME.loads[N].{force[K], body_force[K], traction[K], pressure}\n"
+    "bodies.NAME.driven[N].{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}\n"
+    "bodies.NAME.place.translate[K]\n"
+    "obstacles.NAME.{halfspace.point[K], sphere.centre[K], box.centre[K], cylinder.centre[K], "
+    "place.translate[K]}\n"
+    "obstacles.NAME.motion.{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}\n"
+    "contact.stiffness, contact.pairs[N].stiffness\n"
+    "effects.gravity[K]";
+
+static bool matches(const char *key, const char *pattern, int numbers[MAX_NUMBERS]) {
+  int count = 0;
+  for (; *pattern; pattern++) {
+    if (*pattern != '#') {
+      if (*key++ != *pattern) return false;
+      continue;
+    }
+    char *end;
+    if (!isdigit((unsigned char)*key)) return false;
+    numbers[count++] = (int)strtol(key, &end, 10);
+    key = end;
+  }
+  return *key == 0;
+}
+
+static bool find_key(const char *text, const Key *keys, size_t count, FemParameter *parameter) {
+  int numbers[MAX_NUMBERS];
+  for (size_t k = 0; k < count; k++) {
+    if (!matches(text, keys[k].text, numbers)) continue;
+    parameter->kind = keys[k].kind;
+    if (keys[k].item >= 0) parameter->item = numbers[keys[k].item];
+    if (keys[k].row >= 0) parameter->row = numbers[keys[k].row];
+    if (keys[k].component >= 0) parameter->component = numbers[keys[k].component];
+    return true;
+  }
+  return false;
+}
+
+static bool is_in_range(FemParameter *parameter) {
+  bool is_ogden =
+      parameter->kind == FEM_PARAMETER_OGDEN_EXPONENT || parameter->kind == FEM_PARAMETER_OGDEN_SHARE;
+  if (parameter->kind == FEM_PARAMETER_TABLE) parameter->component--; // behind the time
+  return parameter->component <= 2 && parameter->item >= 0 && parameter->row >= 0 &&
+         (!is_ogden || parameter->row <= 2);
+}
+
+// What is of the kind that the key says: a traction is no force, a sphere no box.
+static bool is_of_kind(const FemSceneDef *scene, const char *rest, const FemParameter *parameter) {
+  static const char *const loads[] = {[FEM_LOAD_FORCE] = "].force[",
+                                      [FEM_LOAD_BODY_FORCE] = "].body_force[",
+                                      [FEM_LOAD_TRACTION] = "].traction[",
+                                      [FEM_LOAD_PRESSURE] = "].pressure"};
+  static const char *const shapes[] = {[FEM_OBSTACLE_MESH] = "place.",
+                                       [FEM_OBSTACLE_HALFSPACE] = "halfspace.",
+                                       [FEM_OBSTACLE_BALL] = "sphere.",
+                                       [FEM_OBSTACLE_BOX] = "box.",
+                                       [FEM_OBSTACLE_CYLINDER] = "cylinder."};
+  if (parameter->kind == FEM_PARAMETER_LOAD) {
+    const FemBodyDef *body = &scene->bodies[parameter->body];
+    if (parameter->item >= body->load_count) return true; // is told later
+    FemLoadKind kind = body->loads[parameter->item].kind;
+    return kind <= FEM_LOAD_PRESSURE && strstr(rest, loads[kind]) != NULL;
+  }
+  if (parameter->kind != FEM_PARAMETER_PLACE || parameter->obstacle < 0) return true;
+  const char *shape = shapes[scene->obstacles[parameter->obstacle].kind];
+  return strncmp(rest, shape, strlen(shape)) == 0;
+}
+
+static Status fail_parameter(const char *key) {
+  return status_fail(STATUS_INPUT, "no derivative by '%s'; there are, with K 0 to 2,\n%s", key,
+                     app_gradient_keys);
+}
+
+// "bodies.NAME.": `rest` is what follows, which begins behind the last known name that fits.
+static Status find_owner(const FemSceneDef *scene, const char *key, const char *list, int begin, int end,
+                         int *number, const char **rest) {
+  const char *name = key + strlen(list);
+  const char *dot = strchr(name, '.');
+  if (!dot) return fail_parameter(key);
+  *rest = dot + 1;
+  return app_gradient_find_name(scene, name, (size_t)(dot - name), begin, end, number);
+}
+
+static Status read_owned(const FemSceneDef *scene, const char *key, FemParameter *parameter) {
+  static const char bodies[] = "bodies.", obstacles[] = "obstacles.";
+  const size_t of_body = sizeof body_keys / sizeof *body_keys;
+  const size_t of_obstacle = sizeof obstacle_keys / sizeof *obstacle_keys;
+  int all = scene->body_count + scene->obstacle_count;
+  const char *rest = NULL;
+  bool is_known;
+  if (strncmp(key, bodies, strlen(bodies)) == 0) {
+    TRY(find_owner(scene, key, bodies, 0, scene->body_count, &parameter->body, &rest));
+    is_known = find_key(rest, body_keys, of_body, parameter);
+  } else {
+    TRY(find_owner(scene, key, obstacles, scene->body_count, all, &parameter->obstacle, &rest));
+    parameter->obstacle -= scene->body_count;
+    is_known = find_key(rest, obstacle_keys, of_obstacle, parameter);
+  }
+  if (!is_known || !is_in_range(parameter)) return fail_parameter(key);
+  if (is_of_kind(scene, rest, parameter)) return STATUS_OK;
+  return status_fail(STATUS_INPUT, "the scene does not have this key");
+}
+
+Status app_gradient_read_parameter(const FemModel *model, const char *key, FemParameter *parameter) {
+  static const char *const lists[] = {"bodies.", "obstacles."};
+  *parameter = (FemParameter){.body = -1, .obstacle = -1};
+  for (int k = 0; k < 2; k++)
+    if (strncmp(key, lists[k], strlen(lists[k])) == 0)
+      return status_prefix(read_owned(model->scene, key, parameter), "%s", key);
+  if (!find_key(key, scene_keys, sizeof scene_keys / sizeof *scene_keys, parameter))
+    return fail_parameter(key);
+  return is_in_range(parameter) ? STATUS_OK : fail_parameter(key);
+}

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A parameter of a gradient by its key in the scene, as --set has it.
+#ifndef TETLAP_APP_GRADIENT_PARAMETER_H
+#define TETLAP_APP_GRADIENT_PARAMETER_H
+
+#include "fem/gradient/parameter.h"
+
+// Keys by which there are derivatives, one form a line, for messages.
+extern const char app_gradient_keys[];
+
+// STATUS_INPUT: no such key, or it names what is not there; the message lists what is.
+Status app_gradient_read_parameter(const FemModel *model, const char *key, FemParameter *parameter);
+
+#endif

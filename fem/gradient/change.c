@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/gradient/change.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "fem/effect/gravity.h"
+#include "fem/gradient/difference.h"
+#include "fem/scene/drive.h"
+
+static size_t values_of(const FemTangent *tangent) {
+  return 3 * (size_t)tangent->system->model->vertex_count;
+}
+
+Status fem_change_create(FemChange *change, const FemTangent *tangent) {
+  size_t values = values_of(tangent);
+  *change = (FemChange){.party = -1, .placed = -1};
+  change->force = memory_zeroed(values, sizeof(double));
+  change->motion = memory_zeroed(values, sizeof(double));
+  change->product = memory_zeroed(values, sizeof(double));
+  change->contact = memory_zeroed(values, sizeof(double));
+  change->rates = memory_zeroed((size_t)tangent->interface_count, sizeof(double));
+  bool fits = change->force && change->motion && change->product && change->contact && change->rates;
+  return fits ? STATUS_OK : status_no_memory("what a parameter changes");
+}
+
+void fem_change_destroy(FemChange *change) {
+  memory_free(change->force);
+  memory_free(change->motion);
+  memory_free(change->rates);
+  memory_free(change->product);
+  memory_free(change->contact);
+  *change = (FemChange){0};
+}
+
+static void clear(FemChange *change, const FemTangent *tangent) {
+  size_t bytes = values_of(tangent) * sizeof(double);
+  memset(change->force, 0, bytes);
+  memset(change->motion, 0, bytes);
+  memset(change->rates, 0, (size_t)tangent->interface_count * sizeof(double));
+  change->party = change->placed = -1;
+  change->elastic = change->gravity = 0;
+  for (int c = 0; c < 3; c++) change->shift[c] = change->spin[c] = change->rest[c] = 0;
+}
+
+// ---- Weight.
+
+// Of vertices from `begin` to before `end`, whose weight changes by m `by`; in a static scene the energy is
+// that of rest and of what has grown (fem/effect/gravity.c).
+static void add_weight(FemChange *change, const FemTangent *tangent, const double by[3], int begin, int end) {
+  const FemModel *model = tangent->system->model;
+  double share = fem_gravity_share(model, tangent->state->time);
+  for (int a = begin; a < end; a++)
+    for (size_t c = 0, dof = 3 * (size_t)a; c < 3; c++, dof++) {
+      double rest = model->rest[dof], way = tangent->state->positions[dof] - rest;
+      change->force[dof] += share * model->mass[a] * by[c];
+      change->gravity -= model->mass[a] * by[c] * (rest + share * way);
+    }
+}
+
+static void weigh_body(FemChange *change, const FemTangent *tangent, int b) {
+  const FemModel *model = tangent->system->model;
+  const FemModelBody *body = &model->bodies[b];
+  double by[3];
+  for (int c = 0; c < 3; c++) by[c] = model->scene->gravity[c] / body->material.density;
+  add_weight(change, tangent, by, body->vertex_begin, body->vertex_end);
+}
+
+// ---- Loads.
+
+// Nodal forces are linear in the load's vector and carry its direction.
+static Status press(FemChange *change, const FemTangent *tangent, const FemParameter *parameter) {
+  const FemModel *model = tangent->system->model;
+  const FemLoadDef *def = &model->scene->bodies[parameter->body].loads[parameter->item];
+  for (int i = 0; i < model->load_count; i++) {
+    const FemLoad *load = &model->loads[i];
+    double factor, square = vec3_dot(vec3_at(def->vector), vec3_at(def->vector));
+    if (load->def != def) continue;
+    TRY(fem_load_factor(def, tangent->state->time, &factor));
+    for (int k = 0; k < load->vertex_count; k++) {
+      Vec3 own = vec3_at(load->force + 3 * (size_t)k);
+      double *force = change->force + 3 * (size_t)load->vertices[k];
+      if (def->kind == FEM_LOAD_PRESSURE)
+        vec3_accumulate(force, vec3_scale(factor / def->pressure, own));
+      else
+        force[parameter->component] += factor * vec3_dot(own, vec3_at(def->vector)) / square;
+    }
+  }
+  return STATUS_OK;
+}
+
+// ---- Prescribed motion.
+
+// The value of a copy of a motion that the parameter is, and a step for differences of it.
+static double *value_in(FemConstraintDef *motion, const FemParameter *parameter, double time, double length,
+                        double *step) {
+  static const double TURN = 1e-2; // [rad]
+  *step = length;
+  switch (parameter->kind) {
+  case FEM_PARAMETER_VELOCITY:
+    *step = length / time;
+    return &motion->velocity[parameter->component];
+  case FEM_PARAMETER_AMPLITUDE:
+    return &motion->amplitude[parameter->component];
+  case FEM_PARAMETER_FREQUENCY:
+    *step = TURN / (2 * M_PI * time);
+    return &motion->frequency;
+  case FEM_PARAMETER_SPIN:
+    *step = TURN / time;
+    return &motion->spin;
+  default:
+    return &motion->table[4 * parameter->row + 1 + parameter->component];
+  }
+}
+
+// A motion whose copy can be changed.
+typedef struct Motion {
+  FemConstraintDef def;
+  double *value, middle, step, time;
+} Motion;
+
+static Status copy_motion(Motion *motion, const FemConstraintDef *def, const FemParameter *parameter,
+                          double time, double length) {
+  *motion = (Motion){.def = *def, .time = fmin(time, def->until)};
+  motion->def.table = memory_copy(def->table, 4 * (size_t)def->table_count, sizeof(double));
+  if (!motion->def.table) return status_no_memory("a motion");
+  motion->value = value_in(&motion->def, parameter, motion->time, length, &motion->step);
+  motion->middle = *motion->value;
+  return STATUS_OK;
+}
+
+// ∂x/∂p of what rests at a point.
+static Vec3 move_point(Motion *motion, const double rest[3]) {
+  Vec3 sum = {0, 0, 0};
+  for (int k = 0; k < FEM_DIFFERENCE_POINTS; k++) {
+    double position[3], velocity[3];
+    *motion->value = motion->middle + fem_difference[k].place * motion->step;
+    fem_drive_point(&motion->def, motion->time, rest, position, velocity);
+    sum = vec3_add(
+        sum, vec3_scale(fem_difference[k].weight / motion->step, vec3_sub(vec3_at(position), vec3_at(rest))));
+  }
+  return sum;
+}
+
+static void move_vertices(FemChange *change, const FemModel *model, const FemConstraintDef *def,
+                          Motion *motion) {
+  for (int d = 0; d < model->driver_count; d++) {
+    const FemModelDriver *driver = &model->drivers[d];
+    for (int i = 0; i < driver->dof_count && driver->def == def; i++) {
+      double moved[3];
+      int dof = driver->dofs[i];
+      vec3_store(moved, move_point(motion, model->rest + (dof - dof % 3)));
+      change->motion[dof] = moved[dof % 3];
+    }
+  }
+}
+
+// A displacement moves all of an obstacle alike; a spin turns it about its axis, which a displacement that
+// comes afterwards has carried along.
+static void move_obstacle(FemChange *change, const FemConstraintDef *def, const FemParameter *parameter,
+                          Motion *motion) {
+  static const double origin[3] = {0, 0, 0};
+  if (parameter->kind != FEM_PARAMETER_SPIN) {
+    vec3_store(change->shift, move_point(motion, origin));
+    return;
+  }
+  double centre[3], velocity[3];
+  Vec3 axis = vec3_at(def->axis);
+  fem_drive_point(def, motion->time, def->centre, centre, velocity);
+  Vec3 about = vec3_at(def->moves_first ? def->centre : centre);
+  Vec3 spin = vec3_scale(motion->time / vec3_length(axis), axis);
+  vec3_store(change->spin, spin);
+  vec3_store(change->shift, vec3_cross(about, spin));
+}
+
+static Status move(FemChange *change, const FemTangent *tangent, const FemParameter *parameter) {
+  const FemModel *model = tangent->system->model;
+  const FemConstraintDef *def = fem_parameter_motion(model, parameter);
+  Motion motion;
+  Status status = copy_motion(&motion, def, parameter, tangent->state->time, model->length);
+  if (!status && parameter->obstacle >= 0) {
+    change->party = fem_change_party(model, parameter->obstacle);
+    move_obstacle(change, def, parameter, &motion);
+  } else if (!status) {
+    move_vertices(change, model, def, &motion);
+  }
+  memory_free(motion.def.table);
+  return status;
+}
+
+// ---- Places.
+
+int fem_change_party(const FemModel *model, int obstacle) {
+  const FemObstacleDef *obstacles = model->scene->obstacles;
+  bool is_mesh = obstacles[obstacle].kind == FEM_OBSTACLE_MESH;
+  int before = 0;
+  for (int o = 0; o < obstacle; o++) before += (obstacles[o].kind == FEM_OBSTACLE_MESH) == is_mesh;
+  return before + (is_mesh ? model->scene->body_count : model->body_count);
+}
+
+// A step of what rests, as a motion has turned it.
+static Vec3 turned_step(const FemConstraintDef *def, double time, int component) {
+  double from[3], to[3], velocity[3], step[3] = {0, 0, 0};
+  step[component] = 1;
+  fem_drive_point(def, time, (const double[3]){0, 0, 0}, from, velocity);
+  fem_drive_point(def, time, step, to, velocity);
+  return vec3_sub(vec3_at(to), vec3_at(from));
+}
+
+static void place_body(FemChange *change, const FemTangent *tangent, const FemParameter *parameter) {
+  const FemModel *model = tangent->system->model;
+  const FemModelBody *body = &model->bodies[parameter->body];
+  change->placed = parameter->body;
+  change->rest[parameter->component] = 1;
+  for (int d = 0; d < model->driver_count; d++) {
+    const FemModelDriver *driver = &model->drivers[d];
+    double step[3];
+    vec3_store(step, turned_step(driver->def, tangent->state->time, parameter->component));
+    for (int i = 0; i < driver->dof_count; i++) {
+      int dof = driver->dofs[i];
+      if (dof / 3 >= body->vertex_begin && dof / 3 < body->vertex_end) change->motion[dof] = step[dof % 3];
+    }
+  }
+  double unseen = 1 - fem_gravity_share(model, tangent->state->time);
+  for (int a = body->vertex_begin; a < body->vertex_end && model->scene->has_gravity; a++)
+    change->gravity -= unseen * model->mass[a] * model->scene->gravity[parameter->component];
+}
+
+static void place(FemChange *change, const FemTangent *tangent, const FemParameter *parameter) {
+  const FemModel *model = tangent->system->model;
+  if (parameter->obstacle < 0) {
+    place_body(change, tangent, parameter);
+    return;
+  }
+  change->party = fem_change_party(model, parameter->obstacle);
+  vec3_store(change->shift, turned_step(&model->scene->obstacles[parameter->obstacle].motion,
+                                        tangent->state->time, parameter->component));
+}
+
+// ---- Stiffness of contact.
+
+static void rate_contact(FemChange *change, const FemTangent *tangent, const FemParameter *parameter) {
+  const FemModel *model = tangent->system->model;
+  int pair = parameter->kind == FEM_PARAMETER_PAIR_STIFFNESS ? parameter->item : -1;
+  for (int i = 0; i < tangent->interface_count; i++) {
+    const ContactInterfaceDef *interface = fem_tangent_interface(tangent, i);
+    if (!interface->law && fem_parameter_pair(model, interface->a, interface->b) == pair)
+      change->rates[i] = 1 / interface->stiffness;
+  }
+}
+
+static Status rate_choice(FemChange *change, FemVaried *varied, const FemTangent *tangent, int body,
+                          FemConstant constant) {
+  double *rates;
+  int parties;
+  Status status = fem_varied_derive_stiffness(varied, body, constant, &rates, &parties);
+  for (int i = 0; i < tangent->interface_count && !status; i++) {
+    const ContactInterfaceDef *interface = fem_tangent_interface(tangent, i);
+    if (!interface->law) change->rates[i] = rates[interface->a * parties + interface->b];
+  }
+  memory_free(rates);
+  return status;
+}
+
+static Status change_material(FemChange *change, FemVaried *varied, const FemTangent *tangent,
+                              const FemParameter *parameter, FemConstant constant, bool follows) {
+  bool is_elastic = constant == FEM_CONSTANT_YOUNG || constant == FEM_CONSTANT_POISSON;
+  TRY(fem_varied_derive(varied, parameter->body, constant, parameter->row, tangent->state, change->force,
+                        &change->elastic));
+  if (!follows || !is_elastic || !tangent->contact) return STATUS_OK;
+  return rate_choice(change, varied, tangent, parameter->body, constant);
+}
+
+// ---- What follows for contact.
+
+bool fem_change_moves(const FemChange *change, const FemTangent *tangent, int interface) {
+  return change->party >= 0 && fem_tangent_interface(tangent, interface)->b == change->party;
+}
+
+void fem_change_field(const FemChange *change, const FemTangent *tangent, int interface, double *field) {
+  const FemModelBody *body = &tangent->system->model->bodies[fem_tangent_interface(tangent, interface)->a];
+  memset(field, 0, values_of(tangent) * sizeof *field);
+  for (size_t a = (size_t)body->vertex_begin; a < (size_t)body->vertex_end; a++)
+    vec3_store(field + 3 * a,
+               vec3_add(vec3_at(change->shift),
+                        vec3_cross(vec3_at(change->spin), vec3_at(tangent->state->positions + 3 * a))));
+}
+
+static void turn_forces(const FemChange *change, const FemTangent *tangent, int interface, double *force) {
+  const FemModelBody *body = &tangent->system->model->bodies[fem_tangent_interface(tangent, interface)->a];
+  for (size_t a = (size_t)body->vertex_begin; a < (size_t)body->vertex_end; a++)
+    vec3_accumulate(force + 3 * a, vec3_cross(vec3_at(change->spin), vec3_at(change->contact + 3 * a)));
+}
+
+Status fem_change_add_contact(FemChange *change, const FemTangent *tangent, int interface, double *force) {
+  size_t values = values_of(tangent);
+  bool moves = fem_change_moves(change, tangent, interface);
+  if (!moves && change->rates[interface] == 0) return STATUS_OK;
+  memset(change->contact, 0, values * sizeof(double));
+  TRY(fem_tangent_add_contact(tangent, interface, change->contact));
+  for (size_t i = 0; i < values; i++) force[i] += change->rates[interface] * change->contact[i];
+  if (!moves) return STATUS_OK;
+  turn_forces(change, tangent, interface, force);
+  fem_change_field(change, tangent, interface, change->product);
+  return fem_tangent_add_contact_product(tangent, interface, change->product, force);
+}
+
+static Status find(FemChange *change, FemVaried *varied, const FemTangent *tangent,
+                   const FemParameter *parameter, bool follows) {
+  static const FemConstant constants[] = {[FEM_PARAMETER_YOUNG] = FEM_CONSTANT_YOUNG,
+                                          [FEM_PARAMETER_POISSON] = FEM_CONSTANT_POISSON,
+                                          [FEM_PARAMETER_MOONEY] = FEM_CONSTANT_MOONEY,
+                                          [FEM_PARAMETER_OGDEN_EXPONENT] = FEM_CONSTANT_OGDEN_EXPONENT,
+                                          [FEM_PARAMETER_OGDEN_SHARE] = FEM_CONSTANT_OGDEN_SHARE,
+                                          [FEM_PARAMETER_FIBRE] = FEM_CONSTANT_FIBRE};
+  double by[3] = {0, 0, 0};
+  switch (parameter->kind) {
+  case FEM_PARAMETER_YOUNG:
+  case FEM_PARAMETER_POISSON:
+  case FEM_PARAMETER_MOONEY:
+  case FEM_PARAMETER_OGDEN_EXPONENT:
+  case FEM_PARAMETER_OGDEN_SHARE:
+  case FEM_PARAMETER_FIBRE:
+    return change_material(change, varied, tangent, parameter, constants[parameter->kind], follows);
+  case FEM_PARAMETER_DENSITY:
+    weigh_body(change, tangent, parameter->body);
+    break;
+  case FEM_PARAMETER_GRAVITY:
+    by[parameter->component] = 1;
+    add_weight(change, tangent, by, 0, tangent->system->model->vertex_count);
+    break;
+  case FEM_PARAMETER_LOAD:
+    return press(change, tangent, parameter);
+  case FEM_PARAMETER_VELOCITY:
+  case FEM_PARAMETER_AMPLITUDE:
+  case FEM_PARAMETER_FREQUENCY:
+  case FEM_PARAMETER_SPIN:
+  case FEM_PARAMETER_TABLE:
+    return move(change, tangent, parameter);
+  case FEM_PARAMETER_PLACE:
+    place(change, tangent, parameter);
+    break;
+  case FEM_PARAMETER_CONTACT_STIFFNESS:
+  case FEM_PARAMETER_PAIR_STIFFNESS:
+    rate_contact(change, tangent, parameter);
+    break;
+  case FEM_PARAMETER_MOTION_ALONE:
+    break;
+  }
+  return STATUS_OK;
+}
+
+Status fem_change_find(FemChange *change, FemVaried *varied, const FemTangent *tangent,
+                       const FemParameter *parameter, bool follows) {
+  clear(change, tangent);
+  if (fem_parameter_idle(tangent->system->model, parameter)) return STATUS_OK;
+  TRY(find(change, varied, tangent, parameter, follows));
+  for (int i = 0; i < tangent->interface_count; i++)
+    TRY(fem_change_add_contact(change, tangent, i, change->force));
+  return STATUS_OK;
+}

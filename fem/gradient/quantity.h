@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Quantities of an equilibrium that have derivatives, and sums and misfits of them.
+#ifndef TETLAP_FEM_GRADIENT_QUANTITY_H
+#define TETLAP_FEM_GRADIENT_QUANTITY_H
+
+#include "fem/gradient/change.h"
+
+typedef enum FemQuantityKind {
+  FEM_QUANTITY_DISPLACEMENT, // mean over all vertices of a body [m]
+  FEM_QUANTITY_PROBE,        // the same of a probe [m]
+  FEM_QUANTITY_POSITION,     // of a vertex of a body [m]
+  FEM_QUANTITY_FORCE,        // of contact on a body or an obstacle, by another or by all [N]
+  FEM_QUANTITY_MOMENT,       // of those forces about the origin [N m]
+  FEM_QUANTITY_REACTION,     // of what holds or drives a body, as in history.csv [N]
+  FEM_QUANTITY_ENERGY,       // [J]
+} FemQuantityKind;
+
+enum { FEM_QUANTITY_ELASTIC = 1, FEM_QUANTITY_CONTACT = 2, FEM_QUANTITY_GRAVITY = 4 };
+
+typedef struct FemQuantity {
+  FemQuantityKind kind;
+  int body;   // of displacement and position; of force and moment the party (contact's order), of a probe its
+              // number
+  int other;  // the party that presses; −1: all
+  int vertex; // of a position, in the body's mesh
+  int component;                // x, y, z
+  int energies;                 // those that are summed
+  const FemConstraintDef *held; // of a reaction, borrowed from the scene
+} FemQuantity;
+
+typedef struct FemTerm {
+  FemQuantity quantity;
+  double weight, data;
+} FemTerm;
+
+// g = Σ weight q, or as a misfit g = ½ Σ weight (q − data)².
+typedef struct FemGoal {
+  FemTerm *terms; // owned by the caller                                  (term_count)
+  int term_count;
+  bool is_misfit;
+} FemGoal;
+
+// STATUS_INPUT: nothing of the kind is in the model.
+Status fem_quantity_check(const FemModel *model, const FemQuantity *quantity);
+const char *fem_quantity_unit(const FemQuantity *quantity);
+
+// q at the state, and q's derivative by all positions, prescribed ones included, times `weight` added to
+// slope (vertex_count, 3; NULL: not wanted).
+Status fem_quantity_evaluate(const FemQuantity *quantity, const FemTangent *tangent, double weight,
+                             double *value, double *slope);
+// q's derivative by a parameter at fixed positions.
+Status fem_quantity_change(const FemQuantity *quantity, const FemTangent *tangent, FemChange *change,
+                           double *derivative);
+
+// g, and its derivative by all positions; `factors` ∂g/∂q of each term (term_count).
+Status fem_goal_evaluate(const FemGoal *goal, const FemTangent *tangent, double *value, double *slope,
+                         double *factors);
+Status fem_goal_change(const FemGoal *goal, const FemTangent *tangent, const double *factors,
+                       FemChange *change, double *derivative);
+
+#endif

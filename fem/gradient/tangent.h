@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contact and stiffness at an equilibrium, over all coordinates, the prescribed ones included, and between
+// any two that can meet: what derivatives are products of.
+#ifndef TETLAP_FEM_GRADIENT_TANGENT_H
+#define TETLAP_FEM_GRADIENT_TANGENT_H
+
+#include "contact/system.h"
+#include "fem/effect/system.h"
+
+typedef struct FemTangent {
+  FemSystem *system;      // borrowed
+  const FemState *state;  // borrowed
+  FemMatrix stiffness;    // K = −∂f/∂x over all coordinates
+  int *every_dof;         // 0, 1, 2 …                                    (3·vertex_count)
+  ContactSystem *contact; // borrowed; NULL: the scene has none
+  int interface_count;
+} FemTangent;
+
+// At a state at which the system's pattern has been laid out (fem_system_couple). Destroy it also after a
+// failure.
+Status fem_tangent_create(FemTangent *tangent, FemSystem *system, const FemState *state);
+void fem_tangent_destroy(FemTangent *tangent);
+
+// y = K x, both (vertex_count, 3). Those of a mesh obstacle's vertices lack contact.
+void fem_tangent_multiply(const FemTangent *tangent, const double *x, double *y);
+
+const ContactInterfaceDef *fem_tangent_interface(const FemTangent *tangent, int interface);
+// The contact of one interface: its forces (added), its energy [J], and its part of K x (added).
+Status fem_tangent_add_contact(const FemTangent *tangent, int interface, double *force);
+Status fem_tangent_contact_energy(const FemTangent *tangent, int interface, double *energy);
+Status fem_tangent_add_contact_product(const FemTangent *tangent, int interface, const double *x, double *y);
+
+#endif

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/gradient/varied.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "fem/gradient/difference.h"
+#include "fem/model/compliance.h"
+
+static Status create_effect(FemEffect *effect, const FemEffectOps *ops, const FemModel *model) {
+  effect->ops = ops;
+  return ops->is_wanted(model->scene) ? ops->create(&effect->self, model) : STATUS_OK;
+}
+
+Status fem_varied_create(FemVaried *varied, const FemModel *model) {
+  *varied = (FemVaried){.model = *model};
+  varied->model.bodies = memory_copy(model->bodies, (size_t)model->body_count, sizeof *model->bodies);
+  varied->force = memory_zeroed(3 * (size_t)model->vertex_count, sizeof *varied->force);
+  if (!varied->model.bodies || !varied->force) return status_no_memory("other materials");
+  TRY(create_effect(&varied->elasticity, &fem_effect_elasticity, &varied->model));
+  return create_effect(&varied->volume, &fem_effect_volume, &varied->model);
+}
+
+void fem_varied_destroy(FemVaried *varied) {
+  FemEffect *effects[] = {&varied->elasticity, &varied->volume};
+  for (int i = 0; i < 2; i++)
+    if (effects[i]->self) effects[i]->ops->destroy(effects[i]->self);
+  memory_free(varied->model.bodies);
+  memory_free(varied->force);
+  *varied = (FemVaried){0};
+}
+
+static double largest_ratio(const FemModelBody *body) {
+  if (body->element == FEM_ELEMENT_NODAL) return FEM_MATERIAL_LARGEST_LOCAL_RATIO;
+  return body->element == FEM_ELEMENT_QUADRATIC ? FEM_QUADRATIC_LARGEST_RATIO : INFINITY;
+}
+
+bool fem_varied_is_kink(const FemModelBody *body) {
+  static const double NEAR = 1e-9;
+  FemLame lame = fem_material_lame(&body->material);
+  double ratio = largest_ratio(body);
+  return isfinite(ratio) && fabs(lame.lambda - ratio * lame.mu) <= NEAR * ratio * lame.mu;
+}
+
+// ∂λ/∂p, ∂μ/∂p by E and by ν.
+static FemLame lame_rate(const FemMaterial *material, FemConstant constant) {
+  double young = material->young, nu = material->poisson;
+  FemLame lame = fem_material_lame(material);
+  if (constant == FEM_CONSTANT_YOUNG) return (FemLame){lame.lambda / young, lame.mu / young};
+  double above = 1 + nu, below = 1 - 2 * nu;
+  return (FemLame){young * (1 + 2 * nu * nu) / (above * above * below * below), -young / (2 * above * above)};
+}
+
+static FemLame lame_along(FemLame from, double step, FemLame rate) {
+  return (FemLame){from.lambda + step * rate.lambda, from.mu + step * rate.mu};
+}
+
+// λ, μ and what elements keep of λ, along the tangent in E or ν.
+static void vary_lame(FemModelBody *to, const FemModelBody *from, FemConstant constant, double step) {
+  FemLame rate = lame_rate(&from->material, constant), local_rate = rate;
+  FemLame lame = fem_material_lame(&from->material), local = fem_material_lame(&from->local);
+  double ratio = largest_ratio(from);
+  if (lame.lambda > ratio * lame.mu) local_rate.lambda = ratio * rate.mu;
+  to->material = fem_material_with_lame(&from->material, lame_along(lame, step, rate));
+  to->local = fem_material_with_lame(&from->local, lame_along(local, step, local_rate));
+  to->bulk = from->bulk + step * (rate.lambda - local_rate.lambda);
+}
+
+// The shares' sum stays.
+static void vary_share(FemMaterial *to, const FemMaterial *from, int place, double step) {
+  double sum = from->shares[0] + from->shares[1] + from->shares[2];
+  for (int p = 0; p < 3; p++) to->shares[p] = from->shares[p] + step * ((p == place) - from->shares[p] / sum);
+}
+
+static void vary(FemModelBody *to, const FemModelBody *from, FemConstant constant, int place, double step) {
+  *to = *from;
+  switch (constant) {
+  case FEM_CONSTANT_YOUNG:
+  case FEM_CONSTANT_POISSON:
+    vary_lame(to, from, constant, step);
+    return;
+  case FEM_CONSTANT_MOONEY:
+    to->local.mooney += step;
+    break;
+  case FEM_CONSTANT_OGDEN_EXPONENT:
+    to->local.exponents[place] += step;
+    break;
+  case FEM_CONSTANT_OGDEN_SHARE:
+    vary_share(&to->local, &from->local, place, step);
+    break;
+  case FEM_CONSTANT_FIBRE:
+    to->local.fibre_stiffness += step;
+    break;
+  }
+}
+
+// So long that the change is not lost in rounding, and short beside where the law has a pole.
+static double step_of(const FemMaterial *material, FemConstant constant, int place) {
+  static const double SHARE = 0.1, OF_EXPONENT = 5e-3;
+  switch (constant) {
+  case FEM_CONSTANT_YOUNG:
+    return SHARE * material->young;
+  case FEM_CONSTANT_POISSON:
+    return SHARE * (0.5 - material->poisson);
+  case FEM_CONSTANT_OGDEN_EXPONENT:
+    return OF_EXPONENT * fabs(material->exponents[place]);
+  case FEM_CONSTANT_OGDEN_SHARE:
+    return SHARE * (material->shares[0] + material->shares[1] + material->shares[2]);
+  case FEM_CONSTANT_FIBRE:
+    return SHARE * material->fibre_stiffness;
+  case FEM_CONSTANT_MOONEY:
+    break;
+  }
+  return SHARE;
+}
+
+// Adds `weight` times the elastic forces and energy.
+static Status add_elastic(FemVaried *varied, const FemState *state, double weight, double *force,
+                          double *energy) {
+  const FemEffect *effects[] = {&varied->elasticity, &varied->volume};
+  size_t count = 3 * (size_t)varied->model.vertex_count;
+  FemEnergy sum = {0};
+  memset(varied->force, 0, count * sizeof *varied->force);
+  for (int i = 0; i < 2; i++) {
+    if (!effects[i]->self) continue;
+    TRY(effects[i]->ops->add_force(effects[i]->self, state, varied->force));
+    TRY(effects[i]->ops->add_energy(effects[i]->self, state, &sum));
+  }
+  for (size_t i = 0; i < count; i++) force[i] += weight * varied->force[i];
+  *energy += weight * sum.elastic;
+  return STATUS_OK;
+}
+
+Status fem_varied_derive(FemVaried *varied, int body, FemConstant constant, int place, const FemState *state,
+                         double *force, double *energy) {
+  FemModelBody *own = &varied->model.bodies[body];
+  const FemModelBody kept = *own;
+  double step = step_of(&kept.material, constant, place);
+  Status status = STATUS_OK;
+  for (int k = 0; k < FEM_DIFFERENCE_POINTS && !status; k++) {
+    vary(own, &kept, constant, place, fem_difference[k].place * step);
+    status = add_elastic(varied, state, fem_difference[k].weight / step, force, energy);
+  }
+  *own = kept;
+  return status;
+}
+
+static Status add_choice(FemVaried *varied, double weight, double *rates, FemCompliance *choice) {
+  TRY(fem_compliance_choose(&varied->model, choice));
+  int count = varied->model.body_count * choice->party_count;
+  for (int i = 0; i < count; i++) rates[i] += weight * log(choice->stiffness[i]);
+  return STATUS_OK;
+}
+
+Status fem_varied_derive_stiffness(FemVaried *varied, int body, FemConstant constant, double **rates,
+                                   int *party_count) {
+  static const double SHARE = 1e-3;
+  FemMaterial *material = &varied->model.bodies[body].material;
+  const FemMaterial kept = *material;
+  bool is_young = constant == FEM_CONSTANT_YOUNG;
+  double *value = is_young ? &material->young : &material->poisson, middle = *value;
+  double step = SHARE * (is_young ? middle : 0.5 - middle);
+  *party_count = varied->model.body_count + fem_scene_shape_count(varied->model.scene);
+  *rates = memory_zeroed((size_t)varied->model.body_count * (size_t)*party_count, sizeof **rates);
+  Status status = *rates ? STATUS_OK : status_no_memory("contact stiffness");
+  for (int k = 0; k < FEM_DIFFERENCE_POINTS && !status; k++) {
+    FemCompliance choice = {0};
+    *value = middle + fem_difference[k].place * step;
+    status = add_choice(varied, fem_difference[k].weight / step, *rates, &choice);
+    fem_compliance_destroy(&choice);
+  }
+  *material = kept;
+  return status;
+}

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The same model with other constants of materials: how forces and energies at fixed positions, and the
+// contact stiffness that is chosen, depend on them.
+//
+// Every law's force is linear in λ, μ, in mooney_rivlin's share, in ogden's shares and in the modulus of
+// fibres, so that half the difference of two forces is the derivative, up to rounding. Ogden's exponents
+// alone take a difference of sixth order.
+#ifndef TETLAP_FEM_GRADIENT_VARIED_H
+#define TETLAP_FEM_GRADIENT_VARIED_H
+
+#include "fem/effect/system.h"
+
+typedef enum FemConstant {
+  FEM_CONSTANT_YOUNG,
+  FEM_CONSTANT_POISSON,
+  FEM_CONSTANT_MOONEY,
+  FEM_CONSTANT_OGDEN_EXPONENT,
+  FEM_CONSTANT_OGDEN_SHARE,
+  FEM_CONSTANT_FIBRE,
+} FemConstant;
+
+typedef struct FemVaried {
+  FemModel model;               // borrows all but `bodies`
+  FemEffect elasticity, volume; // of that model; without `self`: the scene has none
+  double *force;                // scratch                                  (vertex_count, 3)
+} FemVaried;
+
+Status fem_varied_create(FemVaried *varied, const FemModel *model);
+void fem_varied_destroy(FemVaried *varied); // also of a zeroed one
+
+// Whether there is no derivative by ν: nodal and quadratic elements divide λ otherwise below a certain ν.
+bool fem_varied_is_kink(const FemModelBody *body);
+
+// Adds the derivatives of the elastic forces [N] and energy [J] at a state by a constant of a body's
+// material; `place`: which of ogden's three.
+Status fem_varied_derive(FemVaried *varied, int body, FemConstant constant, int place, const FemState *state,
+                         double *force, double *energy);
+
+// ∂ ln κ/∂p of each body with each party (body_count, party_count; owned by the caller), p = E or ν of a
+// body.
+Status fem_varied_derive_stiffness(FemVaried *varied, int body, FemConstant constant, double **rates,
+                                   int *party_count);
+
+#endif
