@@ -51,18 +51,26 @@ static void read_contact(AppLoop *loop, const ContactInterface *interface, int i
   contact->volume = interface->volume;
 }
 
-// The present state has been evaluated; `seconds`: since the last reading.
+static Status take_contacts(AppLoop *loop, const FemState *state, double seconds) {
+  const FemSystem *system = &run_of(loop)->system;
+  const ContactEvaluation *evaluation;
+  if (!contact_of(loop)) return STATUS_OK;
+  TRY(fem_forces_take(&loop->forces, state));
+  TRY(fem_moments_find(system, state, loop->moments));
+  TRY(fem_effect_contact_evaluate(system, state, &evaluation));
+  for (int i = 0; i < loop->contact_count; i++) read_contact(loop, &evaluation->interfaces[i], i, seconds);
+  return STATUS_OK;
+}
+
+// Of the present state; `seconds`: since the last reading.
 static Status read_contacts(AppLoop *loop, double seconds) {
   const FemState *state = app_loop_state(loop);
+  loop->readings++;
+  loop->version_read = 0;
   loop->forces_time = state->time;
   loop->has_vertex_forces = false;
-  void *effect = contact_of(loop);
-  if (!effect) return STATUS_OK;
-  TRY(fem_forces_take(&loop->forces, state));
-  TRY(fem_moments_find(&run_of(loop)->system, state, loop->moments));
-  const ContactEvaluation *evaluation;
-  TRY(fem_effect_contact_evaluate(&run_of(loop)->system, state, &evaluation));
-  for (int i = 0; i < loop->contact_count; i++) read_contact(loop, &evaluation->interfaces[i], i, seconds);
+  TRY(take_contacts(loop, state, seconds));
+  loop->version_read = state->version;
   return STATUS_OK;
 }
 
@@ -133,15 +141,20 @@ static double snap(const AppLoop *loop, double until) {
   return fabs(until - end) <= ROUNDING * end ? end : until;
 }
 
+static Status change(AppLoop *loop, bool jumps) {
+  TRY(fem_run_session_change(loop->session, jumps));
+  return app_loop_read(loop);
+}
+
 Status app_loop_advance(AppLoop *loop, double wanted) {
   const double until = snap(loop, wanted);
   bool has_changed = false;
   TRY(fem_run_session_check(loop->session, until));
   if (until > app_loop_time(loop))
     TRY(app_loop_groups_begin(&loop->groups, app_loop_time(loop), until, &has_changed));
-  if (has_changed) TRY(fem_run_session_change(loop->session, false));
+  if (has_changed) TRY(change(loop, false));
   TRY(fem_run_session_advance(loop->session, until));
-  TRY(read_contacts(loop, 0));
+  if (app_loop_state(loop)->version != loop->version_read) TRY(app_loop_read(loop));
   const bool is_stopped = fem_run_session_is_stopped(loop->session);
   return app_loop_diary_advance(&loop->diary, until, is_stopped ? app_loop_time(loop) : until);
 }
@@ -158,7 +171,7 @@ Status app_loop_set(AppLoop *loop, AppLoopKind kind, const char *name, double ra
   TRY(app_loop_groups_find(&loop->groups, kind, name, &group));
   TRY(app_loop_group_set(&loop->groups, group, state->time, ramp, values, count, state->positions, &jumps));
   TRY(app_loop_diary_set(&loop->diary, kind, name, ramp, values, count));
-  return group->is_pending ? STATUS_OK : fem_run_session_change(loop->session, jumps);
+  return group->is_pending ? STATUS_OK : change(loop, jumps);
 }
 
 Status app_loop_contact(const AppLoop *loop, const char *a, const char *b, int *contact) {

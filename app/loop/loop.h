@@ -37,6 +37,8 @@ typedef struct AppLoop {
   AppLoopContact *contacts; // at the present time                               (contact_count)
   double (*moments)[3];     // scratch                                           (contact_count)
   double forces_time;       // of what the impulses hold [s]
+  long long readings;       // of contacts, so far: as long as it is the same, nothing has moved
+  long long version_read;   // of the state that they are of; 0: none
   bool has_vertex_forces;   // `forces` has those of vertices at the present time
   // After every step, at its state; a Status other than OK ends the advance with it. NULL: nobody is told.
   Status (*on_step)(void *self, struct AppLoop *loop);

@@ -36,6 +36,7 @@ typedef struct Server {
   Place places[PLACE_COUNT];
   char *bytes; // of a request, owned, ends with 0
   size_t capacity;
+  long long shown;            // which reading of the loop is in the memory
   bool tells_steps, is_alone; // the other side is gone
   AppLoopState **states;      // owned; NULL: dropped                                (state_count)
   size_t state_count, state_capacity;
@@ -137,8 +138,10 @@ static void put_contact(const AppLoopContact *contact, double *row) {
   row[16] = contact->volume > 0;
 }
 
-static void show(const Server *server) {
+static void show(Server *server) {
   const FemState *state = app_loop_state(&server->loop);
+  if (server->shown == server->loop.readings) return;
+  server->shown = server->loop.readings;
   const size_t bytes = 3 * (size_t)server->loop.job.model.vertex_count * sizeof(double);
   memcpy(array(server, POINTS), state->positions, bytes);
   memcpy(array(server, VELOCITIES), state->velocities, bytes);

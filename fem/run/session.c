@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "fem/effect/contact/contact.h"
 #include "fem/model/limits.h"
 #include "fem/run/checkpoint/restart.h"
 #include "fem/run/run_frames.h"
@@ -18,11 +19,12 @@ struct FemRunSession {
   char message[2048];
 };
 
-// Evaluates the accepted state: a frame within the last step may have been looked at since.
+// Back to the accepted state: a frame within the last step may have been looked at since. Contact is
+// evaluated again only then.
 static Status look(FemRunState *run) {
-  FemMeasures measures;
+  const ContactEvaluation *contact;
   fem_run_stage_scatter(run);
-  return fem_run_frames_measure(run, &measures);
+  return fem_effect_contact_evaluate(&run->system, &run->trial, &contact);
 }
 
 Status fem_run_session_open(FemRunSession **session, const FemModel *model, const FemRunOptions *options,

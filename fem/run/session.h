@@ -29,8 +29,8 @@ Status fem_run_session_advance(FemRunSession *session, double time);
 // Whether it may go on to that time; fails as the next does.
 Status fem_run_session_check(const FemRunSession *session, double time);
 
-// For the run's observer: evaluates the accepted state again, which a frame within the step may have taken
-// the place of.
+// For the run's observer: back to the accepted state, which a frame within the step may have taken the place
+// of.
 Status fem_run_session_look(FemRunSession *session);
 // Likewise: the advance ends with this step.
 void fem_run_session_stop(FemRunSession *session);
@@ -47,7 +47,7 @@ Status fem_run_session_keep(FemRunSession *session, FemCheckpoint *copy);
 // where it was kept.
 Status fem_run_session_restore(FemRunSession *session, const FemCheckpoint *from);
 
-// The run as it stands; its `trial` is the accepted state, at which everything has been evaluated.
+// The run as it stands; its `trial` is the accepted state, at which contact has been evaluated.
 const FemRunState *fem_run_session_state(const FemRunSession *session);
 
 // Ends the run, at its end or before; NULL: nothing. `status`: OK, or that of the last advance.

@@ -10,10 +10,32 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/vec3.h"
+#include "fem/effect/contact/contact.h"
 #include "folder.h"
 #include "scene.h"
 
 static AppLoop loop;
+
+// What is evaluated is counted.
+static int energies, forces_of_contact;
+Status __real_fem_system_energy(FemSystem *system, const FemState *state, FemEnergy *energy);
+Status __wrap_fem_system_energy(FemSystem *system, const FemState *state, FemEnergy *energy);
+Status __wrap_fem_system_energy(FemSystem *system, const FemState *state, FemEnergy *energy) {
+  energies++;
+  return __real_fem_system_energy(system, state, energy);
+}
+
+Status __real_fem_forces_take(FemForces *forces, const FemState *state);
+Status __wrap_fem_forces_take(FemForces *forces, const FemState *state);
+Status __wrap_fem_forces_take(FemForces *forces, const FemState *state) {
+  forces_of_contact++;
+  return __real_fem_forces_take(forces, state);
+}
+
+static long long evaluations(void) {
+  void *effect = fem_system_effect(&fem_run_session_state(loop.session)->system, &fem_effect_contact);
+  return contact_system_counters(fem_effect_contact_system(effect))->evaluations;
+}
 
 static void open_loop(const char *name, const char *override) {
   static char path[512];
@@ -279,6 +301,35 @@ START_TEST(a_static_scene_goes_from_equilibrium_to_equilibrium) {
 }
 END_TEST
 
+START_TEST(an_advance_by_nothing_evaluates_nothing) {
+  open_loop("hand", NULL);
+  press(0.12);
+  const long long before = evaluations();
+  energies = forces_of_contact = 0;
+  for (int k = 0; k < 10; k++) ck_assert_ok(app_loop_advance(&loop, app_loop_time(&loop)));
+  ck_assert_int_eq(evaluations(), before);
+  ck_assert_int_eq(energies, 0);
+  ck_assert_int_eq(forces_of_contact, 0);
+  app_loop_close(&loop);
+}
+END_TEST
+
+// Frames included.
+START_TEST(a_run_that_is_stepped_evaluates_no_energy_that_the_run_does_not) {
+  SceneRun run;
+  energies = 0;
+  scene_run(&run, "hand", NULL);
+  const int of_run = energies;
+  scene_close(&run);
+  open_loop("hand", NULL);
+  energies = forces_of_contact = 0;
+  ck_assert_ok(app_loop_advance(&loop, 0.2));
+  ck_assert_int_gt(energies, 0);
+  ck_assert_int_le(energies, of_run);
+  app_loop_close(&loop);
+}
+END_TEST
+
 // 12 × .01 is less than .12 by a rounding error: a loop `while (time < 0.12)` ends all the same.
 START_TEST(a_time_that_differs_by_rounding_is_reached) {
   open_loop("hand", NULL);
@@ -316,6 +367,8 @@ int main(void) {
   tcase_add_test(test_case, what_makes_no_sense_is_refused_by_name);
   tcase_add_test(test_case, a_static_scene_goes_from_equilibrium_to_equilibrium);
   tcase_add_test(test_case, an_advance_ends_where_a_condition_holds);
+  tcase_add_test(test_case, an_advance_by_nothing_evaluates_nothing);
+  tcase_add_test(test_case, a_run_that_is_stepped_evaluates_no_energy_that_the_run_does_not);
   tcase_add_test(test_case, a_time_that_differs_by_rounding_is_reached);
   return suite_run("loop", test_case, 60);
 }
