@@ -9,11 +9,14 @@
     load_pairs, evaluate        labelled pairs as arrays; how well a model, yours too, answers them
     compare                     one scene with several models, yours too
     Simulation                  a run that Python steps, reads, pushes on, branches
+    gradient                    exact derivatives of a static scene by its parameters
+    tetlap.torch.run            the same scene as a differentiable function of PyTorch tensors
     poses                       overlap volume and wrench of many rigid poses of a body
 """
 
 from ._compare import Compared, compare
 from ._errors import Error, RunError
+from ._gradient import gradient
 from ._library import Model, models
 from ._pairs import evaluate, load_pairs
 from ._poses import Poses, poses
@@ -23,7 +26,7 @@ from ._simulation import Body, Contact, Drive, Loads, Simulation, State
 from ._volumes import Flag, MeshPairs, Overlap, mesh_overlap, mesh_pairs, overlap
 
 __all__ = ["Body", "Compared", "Contact", "Drive", "Error", "Flag", "Frame", "Frames", "Loads", "MeshPairs", "Model", "Overlap", "Poses", "Run",
-           "RunError", "Simulation", "State", "compare", "evaluate", "load_pairs", "mesh_overlap", "mesh_pairs", "models", "overlap", "poses",
+           "RunError", "Simulation", "State", "compare", "evaluate", "gradient", "load_pairs", "mesh_overlap", "mesh_pairs", "models", "overlap", "poses",
            "read", "run"]
 
 
