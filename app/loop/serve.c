@@ -220,6 +220,7 @@ static Status describe(const Server *server, char **text) {
   record_bodies(&server->loop.job.model, record);
   record_groups(&server->loop.groups, record);
   record_contacts(&server->loop, record);
+  record_merge(record_child(record, "origin"), server->loop.origin);
   *text = record_text_of(record);
   record_destroy(record);
   return *text ? STATUS_OK : status_no_memory("a description");

@@ -9,6 +9,7 @@
 #include "app/sweep/child.h"
 #include "app/sweep/table.h"
 #include "base/clock.h"
+#include "base/cpu.h"
 #include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -18,6 +19,16 @@ static const double PATIENCE_S = 1.2;
 static const struct timespec PAUSE = {.tv_nsec = 20 * 1000 * 1000};
 
 enum { MAX_WORDS = 160 };
+
+AppSweepShare app_sweep_crew_share(int jobs, int threads, int count) {
+  const int cores = cpu_thread_count();
+  if (!jobs) jobs = threads ? cores / threads : cores;
+  if (jobs > count) jobs = count;
+  if (jobs > APP_SWEEP_MAX_JOBS) jobs = APP_SWEEP_MAX_JOBS;
+  if (jobs < 1) jobs = 1;
+  if (!threads) threads = cores / jobs;
+  return (AppSweepShare){.jobs = jobs, .threads = threads > 0 ? threads : 1};
+}
 
 // Where a key is wrong it is wrong everywhere: told at once instead of in every line of the table.
 static Status examine(AppSweepGrid *grid, const Record *before, bool again) {

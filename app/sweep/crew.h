@@ -17,6 +17,17 @@ typedef struct AppSweepOptions {
   const volatile sig_atomic_t *stop; // ends the sweep when it is raised
 } AppSweepOptions;
 
+// How the cores are divided among runs side by side: by `tetlap sweep`, and by tetlap.map of the Python
+// package.
+typedef struct AppSweepShare {
+  int jobs;    // runs at once, 1 … APP_SWEEP_MAX_JOBS
+  int threads; // of each, at least 1
+} AppSweepShare;
+
+// `count` runs: one a core, and what is left of the cores as threads; `jobs` and `threads` are what was asked
+// for (0: nothing).
+AppSweepShare app_sweep_crew_share(int jobs, int threads, int count);
+
 // Examines all, runs what is not finished, and keeps the table. A point that fails is part of the table; if
 // none can be read, that is the sweep's failure. STATUS_INTERRUPTED: stopped; what is there can be gone on
 // with.

@@ -164,6 +164,11 @@ class Channel:
             self._process.kill()
             self._process.wait()
 
+    def end(self):
+        """Ends the program, whatever it does; from any thread. Who waits for it gets a RunError."""
+        if self._process is not None:
+            self._process.kill()
+
     def close(self):
         """Ends the program. Views stay what they were."""
         if os.getpid() != self._pid:  # of a fork: the program is not its

@@ -6,6 +6,12 @@ class Error(Exception):
     """Something of tetlap failed: its library or program is missing, or a file is not what it should be."""
 
 
+class UnknownNameError(Error, KeyError):
+    """There is no body, contact, group, field or array of that name; the message names those that there are."""
+
+    __str__ = Exception.__str__
+
+
 class RunError(Error):
     """A run failed.
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ._errors import Error
+from ._errors import Error, UnknownNameError
 from ._vtu import read_pvd, read_vtu
 
 
@@ -34,7 +34,7 @@ class Frame:
         for arrays in (self.point_data, self.cell_data):
             if name in arrays:
                 return arrays[name]
-        raise KeyError(f"{self.path.name} has no array '{name}'; it has {', '.join(self.names)}")
+        raise UnknownNameError(f"{self.path.name} has no array '{name}'; it has {', '.join(self.names)}")
 
     @property
     def names(self):

@@ -12,7 +12,7 @@ import numpy as np
 
 from . import _channel
 from ._channel import Channel
-from ._errors import Error
+from ._errors import Error, UnknownNameError
 from ._run import _Folder, _Server
 from ._scene import override_texts, scene_text, with_absolute_paths
 
@@ -20,15 +20,9 @@ _FORCES, _STRESS = 1, 2
 _NEXT_ADVANCE = -1.0
 
 
-class _UnknownName(KeyError):
-    """A KeyError that shows its message as it is."""
-
-    __str__ = Exception.__str__
-
-
 def _named(names, name, what):
     known = ", ".join(repr(key) for key in names) or "none"
-    return _UnknownName(f"there is no {what} {name!r}; there is {known}")
+    return UnknownNameError(f"there is no {what} {name!r}; there is {known}")
 
 
 class Body:
@@ -276,7 +270,7 @@ class Simulation:
     contacts: Contact by two names
     drive, loads: Drive and Loads, what the scene declares `external: true`
 
-    ValueError, KeyError, TypeError: what was asked for makes no sense. RunError: the run failed, with its own message; after it a
+    ValueError, TypeError, UnknownNameError: what was asked for makes no sense. RunError: the run failed, with its own message; after it a
     state can be restored. Error: it is closed, or used by two threads at once.
     """
 
@@ -291,7 +285,7 @@ class Simulation:
 
     def _open(self, scene):
         self._scene, self._dropped, self._fresh = scene, [], 0
-        self._on_step, self._on_contact, self._touching = [], [], None
+        self._forget_callbacks()
         overlap = self._arguments["overlap"]
         self._server = _Server(overlap) if callable(overlap) else None
         try:
@@ -365,6 +359,9 @@ class Simulation:
         self._touching = self._find_touching()
         self._on_contact.append(function)
         return function
+
+    def _forget_callbacks(self):
+        self._on_step, self._on_contact, self._touching = [], [], None
 
     def _find_touching(self):
         return [self.contacts[pair].touches for pair in self.contacts]

@@ -2,6 +2,7 @@
 // app/sweep: the values of an axis, and `tetlap sweep` as a whole.
 #include "folder.h"
 
+#include <omp.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,6 +11,7 @@
 #include <unistd.h>
 
 #include "app/sweep/axis.h"
+#include "app/sweep/crew.h"
 #include "app/sweep/history.h"
 #include "app/sweep/order.h"
 #include "app/sweep/point.h"
@@ -63,6 +65,22 @@ START_TEST(linked_keys_change_together) {
       STATUS_USAGE);
   ck_assert_ptr_nonnull(strstr(status_message(), "'a' has 3 values and 'b', which changes with it, 2"));
   for (int a = 0; a < base.axis_count; a++) app_sweep_axis_destroy(&base.axes[a]);
+}
+END_TEST
+
+START_TEST(cores_are_divided_among_runs) {
+  const struct {
+    int jobs, threads, count, jobs_are, threads_are;
+  } cases[] = {{0, 0, 100, 12, 1}, {0, 0, 5, 5, 2}, {0, 0, 1, 1, 12},  {4, 0, 100, 4, 3},
+               {0, 3, 100, 4, 3},  {2, 3, 9, 2, 3}, {0, 99, 9, 1, 99}, {24, 0, 100, 24, 1}};
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(12);
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    const AppSweepShare share = app_sweep_crew_share(cases[k].jobs, cases[k].threads, cases[k].count);
+    ck_assert_int_eq(share.jobs, cases[k].jobs_are);
+    ck_assert_int_eq(share.threads, cases[k].threads_are);
+  }
+  omp_set_num_threads(before);
 }
 END_TEST
 
@@ -442,6 +460,7 @@ int main(void) {
   TCase *cases = tcase_create("sweep");
   tcase_add_checked_fixture(cases, folder_make, folder_remove);
   tcase_add_test(cases, linked_keys_change_together);
+  tcase_add_test(cases, cores_are_divided_among_runs);
   tcase_add_test(cases, the_observed_order_of_a_quadratic_error_is_two);
   tcase_add_test(cases, ranges_have_both_ends_and_lists_their_words);
   tcase_add_test(cases, an_axis_that_makes_no_sense_is_a_usage_error);

@@ -9,7 +9,6 @@
 #include "app/sweep/child.h"
 #include "app/sweep/crew.h"
 #include "app/sweep/table.h"
-#include "base/cpu.h"
 #include "base/log.h"
 #include "base/memory.h"
 
@@ -55,20 +54,6 @@ static Status parse_axes(const Options *options, AppSweepBase *base) {
   return STATUS_OK;
 }
 
-// As many runs as there are cores, and what is left of these as threads.
-static AppSweepOptions share_cores(const Options *options, int point_count) {
-  int cores = cpu_thread_count();
-  int jobs = options->jobs ? options->jobs : options->threads ? cores / options->threads : cores;
-  if (jobs > point_count) jobs = point_count;
-  if (jobs > APP_SWEEP_MAX_JOBS) jobs = APP_SWEEP_MAX_JOBS;
-  if (jobs < 1) jobs = 1;
-  int threads = options->threads ? options->threads : cores / jobs;
-  return (AppSweepOptions){.jobs = jobs,
-                           .threads = threads > 0 ? threads : 1,
-                           .again = options->again,
-                           .stop = app_job_stop_flag()};
-}
-
 static Status print_table(const AppSweepGrid *grid, const Options *options) {
   if (!options->is_json)
     return app_sweep_table_print(grid, options->is_markdown ? APP_TABLE_MARKDOWN : APP_TABLE_PLAIN, stdout);
@@ -104,7 +89,9 @@ static Status sweep(const Options *options, const char *directory) {
   }
   status = app_sweep_grid_create(&grid, &base);
   if (!status) {
-    AppSweepOptions run_options = share_cores(options, grid.point_count);
+    const AppSweepShare share = app_sweep_crew_share(options->jobs, options->threads, grid.point_count);
+    const AppSweepOptions run_options = {
+        .jobs = share.jobs, .threads = share.threads, .again = options->again, .stop = app_job_stop_flag()};
     status = app_sweep_crew_run(&grid, &run_options);
   }
   if (!status) status = conclude(&grid, options);
