@@ -40,12 +40,19 @@ static int widest_of(const AppCommand *group) {
   return widest;
 }
 
+static void print_heading(const AppHeading *heading, const AppCommand *child, FILE *stream) {
+  for (; heading && heading->first; heading++)
+    if (heading->first == child) fprintf(stream, "%s\n", heading->text);
+}
+
 void app_cli_command_print(const AppCommand *group, const char *called, FILE *stream) {
   fprintf(stream, "Usage: %s ", called);
   for (const char *letter = group->child_word; *letter; letter++) fputc(*letter - 'a' + 'A', stream);
   fprintf(stream, " [OPTION...]\n%s\n\n", group->doc);
-  for (const AppCommand *const *child = group->children; *child; child++)
+  for (const AppCommand *const *child = group->children; *child; child++) {
+    print_heading(group->headings, *child, stream);
     fprintf(stream, "  %-*s  %s\n", widest_of(group), (*child)->name, (*child)->help);
+  }
   fprintf(stream, "\n%s\n", group->ending);
 }
 

@@ -10,6 +10,12 @@
 #include "app/cli/option.h"
 #include "base/status.h"
 
+// Where a heading stands in a list of commands.
+typedef struct AppHeading {
+  const struct AppCommand *first; // the command that it stands above
+  const char *text;
+} AppHeading;
+
 // A command has `run`, a group has `children`. All is constant and borrowed.
 typedef struct AppCommand {
   const char *name;              // the word on the command line
@@ -25,6 +31,7 @@ typedef struct AppCommand {
   const void *rows;                         // what it prints rows of, for `describe_rows`; NULL: no rows
   char *(*describe_rows)(const void *rows); // a line for each key of a row; owned by the caller (free)
   const struct AppCommand *const *children; // of a group, such as `tetlap dataset VERB`; ended by NULL
+  const AppHeading *headings;               // of a long group's list, ended by a zeroed line; NULL: none
   const char *child_word;                   // of a group: what a child is called, "verb"
   const char *child_of_files;               // the child that a file's name calls for; NULL: none
   const char *doc;    // what it does, above the options or children; behind a vertical tab what stands below

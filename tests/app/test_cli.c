@@ -132,6 +132,23 @@ START_TEST(every_help_is_laid_out_in_columns) {
 }
 END_TEST
 
+// The list of all commands fits a screen of 40 lines and 79 columns, below headings.
+START_TEST(the_list_of_commands_fits_a_screen) {
+  output_for("%s %s --help", "tetlap");
+  int lines = 0, headings = 0;
+  for (const char *line = text; *line; line += *line == '\n') {
+    const char *end = line + strcspn(line, "\n");
+    ck_assert_msg(columns_of(line, end) <= 79, "too wide: %.*s", (int)(end - line), line);
+    bool is_heading = *line != ' ' && line != end && strncmp(end, "\n  ", 3) == 0;
+    headings += is_heading;
+    lines++;
+    line = end;
+  }
+  ck_assert_int_le(lines, 40);
+  ck_assert_int_ge(headings, 5);
+}
+END_TEST
+
 // What bash offers behind the words that call a command: its options, or a group's children.
 static void check_bash(const AppCommand *command, const char *called) {
   static char options[MOST_OPTIONS][MOST_NAME];
@@ -300,7 +317,8 @@ START_TEST(only_commands_with_threads_start_the_program_again) {
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     int count = 0;
     while (count < 4 && cases[i].words[count]) count++;
-    ck_assert_msg(app_program_has_threads(&app_program_root, count, cases[i].words) == cases[i].has_threads, "case %zu", i);
+    ck_assert_msg(app_program_has_threads(&app_program_root, count, cases[i].words) == cases[i].has_threads,
+                  "case %zu", i);
   }
 }
 END_TEST
@@ -309,6 +327,7 @@ int main(void) {
   TCase *cases = tcase_create("cli");
   tcase_add_test(cases, every_option_of_every_help_is_in_the_manual);
   tcase_add_test(cases, every_help_is_laid_out_in_columns);
+  tcase_add_test(cases, the_list_of_commands_fits_a_screen);
   tcase_add_test(cases, bash_completes_every_option_of_every_help);
   tcase_add_test(cases, bash_completes_models_where_an_option_takes_them_and_nothing_for_numbers);
   tcase_add_test(cases, zsh_completes_every_option_of_every_help);

@@ -207,7 +207,7 @@ static int run_command(int argument_count, char **arguments) {
 
 const AppCommand app_command_verdict = {
     .name = "verdict",
-    .help = "say what an overlap model is fit for: to detect, for forces, to drive a motion",
+    .help = "say what an overlap model is fit for: detection, forces, motion",
     .options = option_table,
     .arguments = &(
         const AppArguments){"MODEL…", offsetof(Options, models), MOST_MODELS, offsetof(Options, model_count),
