@@ -64,14 +64,14 @@ static const Key scene_keys[] = {
 
 const char app_gradient_keys[] =
     "bodies.NAME.material.{young, poisson, density, mooney, ogden.exponents[K], ogden.shares[K], "
-    "fibre.modulus}\n"
-    "bodies.NAME.loads[N].{force[K], body_force[K], traction[K], pressure}\n"
-    "bodies.NAME.driven[N].{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}\n"
-    "bodies.NAME.place.translate[K]\n"
+    "fibre.modulus}; "
+    "bodies.NAME.loads[N].{force[K], body_force[K], traction[K], pressure}; "
+    "bodies.NAME.driven[N].{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}; "
+    "bodies.NAME.place.translate[K]; "
     "obstacles.NAME.{halfspace.point[K], sphere.centre[K], box.centre[K], cylinder.centre[K], "
-    "place.translate[K]}\n"
-    "obstacles.NAME.motion.{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}\n"
-    "contact.stiffness, contact.pairs[N].stiffness\n"
+    "place.translate[K]}; "
+    "obstacles.NAME.motion.{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}; "
+    "contact.stiffness, contact.pairs[N].stiffness; "
     "effects.gravity[K]";
 
 static bool matches(const char *key, const char *pattern, int numbers[MAX_NUMBERS]) {
@@ -133,7 +133,7 @@ static bool is_of_kind(const FemSceneDef *scene, const char *rest, const FemPara
 }
 
 static Status fail_parameter(const char *key) {
-  return status_fail(STATUS_INPUT, "no derivative by '%s'; there are, with K 0 to 2,\n%s", key,
+  return status_fail(STATUS_INPUT, "no derivative by '%s'; there are, with K 0 to 2, %s", key,
                      app_gradient_keys);
 }
 

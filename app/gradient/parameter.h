@@ -5,7 +5,7 @@
 
 #include "fem/gradient/parameter.h"
 
-// Keys by which there are derivatives, one form a line, for messages.
+// Keys by which there are derivatives, for messages.
 extern const char app_gradient_keys[];
 
 // STATUS_INPUT: no such key, or it names what is not there; the message lists what is.

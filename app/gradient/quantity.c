@@ -10,21 +10,21 @@
 
 enum { MAX_WORDS = 5, WORD_SIZE = 128 };
 
-const char app_gradient_quantities[] = "displacement:BODY:AXIS\n"
-                                       "probe:NAME:AXIS\n"
-                                       "position:BODY:VERTEX:AXIS\n"
-                                       "force:BODY:AXIS\n"
-                                       "force:BODY:OTHER:AXIS\n"
-                                       "moment:BODY:AXIS\n"
-                                       "moment:BODY:OTHER:AXIS\n"
-                                       "reaction:BODY:fixed[N]:AXIS\n"
-                                       "reaction:BODY:driven[N]:AXIS\n"
-                                       "energy, energy:elastic, energy:contact, energy:gravity\n"
-                                       "sum:FILE\n"
+const char app_gradient_quantities[] = "displacement:BODY:AXIS, "
+                                       "probe:NAME:AXIS, "
+                                       "position:BODY:VERTEX:AXIS, "
+                                       "force:BODY:AXIS, "
+                                       "force:BODY:OTHER:AXIS, "
+                                       "moment:BODY:AXIS, "
+                                       "moment:BODY:OTHER:AXIS, "
+                                       "reaction:BODY:fixed[N]:AXIS, "
+                                       "reaction:BODY:driven[N]:AXIS, "
+                                       "energy, energy:elastic, energy:contact, energy:gravity, "
+                                       "sum:FILE, "
                                        "misfit:FILE";
 
 static Status fail_quantity(const char *text) {
-  return status_fail(STATUS_INPUT, "'%s' is none of the quantities\n%s\nwith AXIS x, y or z", text,
+  return status_fail(STATUS_INPUT, "'%s' is none of the quantities %s, with AXIS x, y or z", text,
                      app_gradient_quantities);
 }
 

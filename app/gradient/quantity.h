@@ -5,7 +5,7 @@
 
 #include "fem/gradient/quantity.h"
 
-// The words that there are, one form a line, for messages; sums of files (app/gradient/goal.h) among them.
+// The words that there are, for messages; sums of files (app/gradient/goal.h) among them.
 extern const char app_gradient_quantities[];
 
 // STATUS_INPUT: no such quantity, or a body, obstacle, probe or entry that is not there; the message lists

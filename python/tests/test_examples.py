@@ -32,6 +32,18 @@ class Examples(unittest.TestCase):
         self.assertLessEqual(abs(size / known - 1), 0.01)
         self.assertLess(size, 0.9 * separate.DEPTH)
 
+    def test_identify_finds_the_material_within_the_noise_from_every_start(self):
+        import identify
+
+        ends = identify.main()
+        self.assertEqual(len(ends), 3)
+        best = ends["near"][0]
+        for material, misfit, spread in ends.values():
+            self.assertLess(max(abs(material - best) / spread), 0.01)
+            self.assertLess(max(abs(material - identify.TRUTH) / spread), 3)
+            self.assertLess(max(spread / identify.TRUTH), 0.02)
+            self.assertLess(misfit, 15)  # six numbers, two parameters
+
 
 if __name__ == "__main__":
     unittest.main()

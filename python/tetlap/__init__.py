@@ -10,11 +10,14 @@
     compare                     one scene with several models, yours too
     Simulation                  a run that Python steps, reads, pushes on, branches
     map, Results                many of them side by side; what they gave, as arrays
+    gradient                    exact derivatives of a static scene by its parameters
+    tetlap.torch.run            the same scene as a differentiable function of PyTorch tensors
     poses                       overlap volume and wrench of many rigid poses of a body
 """
 
 from ._compare import Compared, compare
 from ._errors import Error, RunError, UnknownNameError
+from ._gradient import gradient
 from ._library import Model, models
 from ._map import map  # noqa: A004
 from ._pairs import evaluate, load_pairs
@@ -25,8 +28,9 @@ from ._simulation import Body, Contact, Drive, Loads, Simulation, State
 from ._table import Failure, Results
 from ._volumes import Flag, MeshPairs, Overlap, mesh_overlap, mesh_pairs, overlap
 
-__all__ = ["Body", "Compared", "Contact", "Drive", "Error", "Failure", "Flag", "Frame", "Frames", "Loads", "MeshPairs", "Model", "Overlap", "Poses", "Results",
-           "Run", "RunError", "Simulation", "State", "UnknownNameError", "compare", "evaluate", "load_pairs", "map", "mesh_overlap", "mesh_pairs", "models", "overlap", "poses",
+__all__ = ["Body", "Compared", "Contact", "Drive", "Error", "Failure", "Flag", "Frame", "Frames", "Loads", "MeshPairs", "Model", "Overlap",
+           "Poses", "Results", "Run", "RunError", "Simulation", "State", "UnknownNameError", "compare", "evaluate", "gradient", "load_pairs",
+           "map", "mesh_overlap", "mesh_pairs", "models", "overlap", "poses",
            "read", "run"]
 
 

@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Overlap volumes as a differentiable function of PyTorch tensors.
+"""Overlap volumes, and whole static runs, as differentiable functions of PyTorch tensors.
 
     V = tetlap.torch.overlap(x)      x (…, 2, 4, 3) on the CPU, V (…)
+    q = tetlap.torch.run(scene, {"bodies.block.material.young": young}, ["force:block:z"])
 
 The first derivative is the model's own ∇V. The second is its ∇²V, given as products with the vectors that autograd hands
 down, so that no matrix of 24 x 24 is made; models without ∇²V refuse that, by name.
 """
 
+import warnings
+
 import torch
 
+from ._gradient import gradient as _gradient_of_arrays
+from ._scene import override_texts
 from ._volumes import _model, overlap as _overlap_of_arrays
 
 
@@ -68,3 +73,52 @@ def overlap(x, model="clip", threads=0):
     """
     _check(x)
     return _Volume.apply(x, _model(model, threads))
+
+
+class _Run(torch.autograd.Function):
+    """Quantities of a run, which keep their derivatives for the way back."""
+
+    @staticmethod
+    def forward(ctx, scene, keys, of, overrides, *values):
+        of_values = [f"{key}={float(value)!r}" for key, value in zip(keys, values)]
+        found = _gradient_of_arrays(scene, of, keys, set=overrides + of_values, total=True)
+        if found["contact_stiffness"] == "follows":
+            _warn_of_choice(keys)
+        ctx.derivative, ctx.dtypes = torch.from_numpy(found["derivative"]), [value.dtype for value in values]
+        return torch.from_numpy(found["value"])
+
+    @staticmethod
+    @torch.autograd.function.once_differentiable
+    def backward(ctx, from_values):
+        by_keys = from_values @ ctx.derivative
+        return None, None, None, None, *(value.to(dtype) for value, dtype in zip(by_keys, ctx.dtypes))
+
+
+def _warn_of_choice(keys):
+    others = [key for key in keys if not key.endswith((".material.young", ".material.poisson"))]
+    if others:
+        warnings.warn(f"contact.stiffness is chosen by the program, and is taken as not depending on {', '.join(others)}; give the scene a "
+                      "contact.stiffness", stacklevel=4)
+
+
+def _check_parameters(parameters):
+    if not parameters:
+        raise ValueError("parameters is empty; expected {'bodies.block.material.young': tensor}")
+    for key, value in parameters.items():
+        if not isinstance(value, torch.Tensor):
+            raise TypeError(f"{key} is a {type(value).__name__}; expected a torch.Tensor")
+        if value.dim() != 0 or value.device.type != "cpu":
+            raise ValueError(f"{key} is a tensor of shape {tuple(value.shape)} on {value.device}; expected one number on the CPU")
+
+
+def run(scene, parameters, of, *, set=None):
+    """The quantities `of` (a list as of tetlap.gradient) of a static scene without friction, a tensor (of) in float64.
+
+    parameters: {key of the scene: tensor of one number}; they replace the scene's values. Differentiable once by all of them. A
+    contact stiffness that the scene does not give follows E and ν.
+
+    RunError: as of tetlap.gradient.
+    """
+    _check_parameters(parameters)
+    keys = list(parameters)
+    return _Run.apply(scene, keys, of, override_texts(set), *parameters.values())

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Exact derivatives of static scenes, as arrays and as a function that PyTorch differentiates."""
+
+import unittest
+
+import numpy as np
+
+import tetlap
+
+SCENE = {
+    "time": {"end": 1, "static": True},
+    "output": {"frames": 2},
+    "effects": {"gravity": [0, 0, -9.81]},
+    "bodies": [
+        {"name": "block", "mesh": {"box": {"size": [0.2, 0.2, 0.1], "cells": [2, 2, 1]}},
+         "material": {"young": 1e5, "poisson": 0.3, "density": 1000}, "fixed": [{"group": "z_max", "components": ["x", "y"]}]},
+    ],
+    "obstacles": [{"name": "ground", "halfspace": {"point": [0, 0, 0], "normal": [0, 0, 1]}}],
+    "contact": {"stiffness": 1e7},
+}
+DENSITY, YOUNG, DAMPING = (f"bodies.block.material.{name}" for name in ("density", "young", "damping"))
+
+
+class Gradient(unittest.TestCase):
+    def test_what_rests_on_the_ground_weighs_by_its_density(self):
+        found = tetlap.gradient(SCENE, ["force:block:ground:z", "energy"], [DENSITY, YOUNG, DAMPING, "effects.gravity[2]"])
+        weight = 0.2 * 0.2 * 0.1 * 1000 * 9.81
+        self.assertEqual(found["derivative"].shape, (2, 4))
+        self.assertAlmostEqual(found["value"][0], weight, delta=1e-9 * weight)
+        np.testing.assert_allclose(found["derivative"][0], [weight / 1000, 0, 0, -weight / 9.81], rtol=0, atol=1e-9 * weight)
+        np.testing.assert_allclose(found["share"][0, [0, 3]], 1, rtol=1e-9)
+        np.testing.assert_array_equal(found["parameter"][[0, 1, 3]], [1000, 1e5, -9.81])
+        self.assertTrue(np.isnan(found["parameter"][2]))
+        self.assertEqual(list(found["does_not_act"]), [DAMPING])
+        self.assertEqual(found["contact_stiffness"], "given")
+        self.assertEqual((found["unit"], found["parameter_unit"][:2]), (["N", "J"], ["kg/m³", "Pa"]))
+        self.assertLess(max(found["adjoint_residual"].max(), found["force_residual"]), 1e-10)
+
+    def test_one_quantity_by_one_parameter_with_a_value_replaced(self):
+        found = tetlap.gradient(SCENE, "force:block:z", DENSITY, set={DENSITY: 2000})
+        self.assertEqual(found["derivative"].shape, (1, 1))
+        self.assertEqual(found["parameter"][0], 2000)
+
+    def test_what_has_no_gradient_says_why(self):
+        with self.assertRaisesRegex(tetlap.RunError, "friction"):
+            tetlap.gradient(SCENE, "energy", DENSITY, set={"contact.friction": 0.3})
+        with self.assertRaisesRegex(tetlap.RunError, "there are block"):
+            tetlap.gradient(SCENE, "displacement:brick:z", DENSITY)
+        with self.assertRaisesRegex(TypeError, r"of is \[3\]"):
+            tetlap.gradient(SCENE, [3], DENSITY)
+
+
+class Torch(unittest.TestCase):
+    def setUp(self):
+        try:
+            import torch
+        except ImportError:
+            self.skipTest("no python3-torch")
+        self.torch = torch
+
+    def test_a_loss_goes_back_through_the_run(self):
+        torch = self.torch
+        density = torch.tensor(1000.0, dtype=torch.float64, requires_grad=True)
+        young = torch.tensor(1e5, requires_grad=True)
+        q = tetlap.torch.run(SCENE, {DENSITY: density, YOUNG: young}, ["force:block:z", "displacement:block:z"])
+        (q[0] ** 2).backward()
+        weight = 39.24
+        self.assertAlmostEqual(density.grad.item(), 2 * weight * weight / 1000, delta=1e-9 * weight * weight)
+        self.assertEqual(young.grad.dtype, torch.float32)
+        self.assertLess(abs(young.grad.item()), 1e-9)
+
+    def test_gradcheck(self):
+        torch = self.torch
+        scale = torch.ones(2, dtype=torch.float64, requires_grad=True)
+
+        def displacement(scale):
+            return 1e6 * tetlap.torch.run(SCENE, {YOUNG: 1e5 * scale[0], DENSITY: 1000 * scale[1]}, "displacement:block:z")
+
+        self.assertTrue(torch.autograd.gradcheck(displacement, (scale,), eps=1e-4, rtol=1e-6, atol=1e-4))
+
+    def test_a_chosen_stiffness_follows_the_material_and_warns_of_others(self):
+        torch = self.torch
+        scene = {**SCENE, "contact": {}}
+        young = torch.tensor(1e5, dtype=torch.float64, requires_grad=True)
+        displaced = tetlap.torch.run(scene, {YOUNG: young}, "displacement:block:z")
+        displaced.sum().backward()
+        # Linear up to the shape of a body this stiff: all of it is inverse to E.
+        self.assertAlmostEqual(young.grad.item() * 1e5 / displaced.item(), -1, delta=0.02)
+        with self.assertWarnsRegex(UserWarning, "density"):
+            tetlap.torch.run(scene, {DENSITY: torch.tensor(1000.0)}, "displacement:block:z")
+
+    def test_wrong_parameters_are_refused(self):
+        with self.assertRaisesRegex(TypeError, "expected a torch.Tensor"):
+            tetlap.torch.run(SCENE, {YOUNG: 1e5}, "energy")
+        with self.assertRaisesRegex(ValueError, "one number"):
+            tetlap.torch.run(SCENE, {YOUNG: self.torch.ones(2)}, "energy")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Derivatives of a static scene's quantities by its parameters, by `tetlap gradient`."""
+
+import json
+import subprocess
+
+import numpy as np
+
+from . import _locate
+from ._errors import RunError
+from ._run import _place_scene, _Words
+from ._scene import override_texts
+
+
+def _names(value, what, example):
+    names = [value] if isinstance(value, str) else list(value)
+    if not names or not all(isinstance(name, str) for name in names):
+        raise TypeError(f"{what} is {value!r}; expected a text as {example!r}, or a list of such texts")
+    return names
+
+
+def _execute(command):
+    process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace")
+    said = _Words(process.stderr)
+    try:
+        out = process.stdout.read()
+        process.wait()
+    except BaseException:
+        process.kill()
+        process.wait()
+        raise
+    finally:
+        process.stdout.close()
+        said.join()
+    if process.returncode != 0:
+        message = "\n".join(said.errors) or f"exit code {process.returncode}"
+        raise RunError(f"tetlap gradient failed: {message}", process.returncode, None)
+    return json.loads(out)
+
+
+def _number(value):
+    return np.nan if value is None else value
+
+
+def _arrays(found, of, by):
+    goals = [found["of"][name] for name in of]
+    rows = [[goal["by"][key] for key in by] for goal in goals]
+    return {
+        "of": of,
+        "by": by,
+        "value": np.array([_number(goal["value"]) for goal in goals]),
+        "derivative": np.array([[_number(cell["derivative"]) for cell in row] for row in rows]),
+        "share": np.array([[_number(cell["share"]) for cell in row] for row in rows]),
+        "parameter": np.array([_number(cell["value"]) for cell in rows[0]]),
+        "unit": [goal["unit"] for goal in goals],
+        "parameter_unit": [cell["unit"] for cell in rows[0]],
+        "does_not_act": {key: cell["does_not_act"] for key, cell in zip(by, rows[0]) if cell["does_not_act"]},
+        "adjoint_residual": np.array([goal["adjoint_residual"] for goal in goals]),
+        "matrix_residual": np.array([goal["matrix_residual"] for goal in goals]),
+        "force_residual": found["force_residual"],
+        "contact_stiffness": found["contact_stiffness"],
+    }
+
+
+def gradient(scene, of, by, *, set=None, total=False):
+    """Runs a static scene without friction to its end; what quantities are there, and their exact derivatives, as a dict of arrays.
+
+    scene: a scene file's path, or a dict with the same keys (docs/scene.md). Nothing is written.
+    of: a quantity, "force:ball:ground:z", or a list of them (docs/gradients.md).
+    by: a parameter's key, "bodies.ground.material.young", or a list of them.
+    set: as of `tetlap.run`.
+    total: a contact stiffness that the scene does not give changes with E and ν as it is chosen from them; else it is kept.
+
+    value (of): the quantities. derivative (of, by): dq/dp. share (of, by): p dq/dp / q. parameter (by): their values. unit and
+    parameter_unit: lists of texts. does_not_act: why a derivative is 0, by key. force_residual, adjoint_residual (of),
+    matrix_residual (of): how exact. contact_stiffness: "given", "kept", "follows" or "none". Where there is no number: NaN.
+
+    RunError: the scene has no such gradient, or the run failed; it carries the program's message.
+    """
+    of = _names(of, "of", "displacement:block:z")
+    by = _names(by, "by", "contact.stiffness")
+    scene, _, keeper = _place_scene(scene, None)
+    command = [_locate.program(), "gradient", str(scene), "--json", "--by", ",".join(by)]
+    for name in of:
+        command += ["--of", name]
+    for text in override_texts(set):
+        command += ["--set", text]
+    try:
+        return _arrays(_execute(command + ["--total"] * bool(total)), of, by)
+    finally:
+        del keeper
