@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether this process has been asked to end, by Ctrl-C or SIGTERM. A flag of the process, as signals are:
-// who computes long looks at it, who waits looks again now and then, since a signal that comes just before a
+// long computations read it, and waits read it again at intervals, since a signal that comes just before a
 // wait does not interrupt it.
 #ifndef TETLAP_BASE_INTERRUPT_H
 #define TETLAP_BASE_INTERRUPT_H

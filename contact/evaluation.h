@@ -67,7 +67,7 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
                               bool with_shapes, double time, const double *positions);
 
 // Forgets the last result and lists instead, without asking a model, the pairs of meshes whose boxes meet:
-// pairs, coordinates and mesh_pair_count. It is what a model that sees ghosts is asked.
+// pairs, coordinates and mesh_pair_count. A model that gives disjoint pairs a volume is asked these.
 Status contact_evaluation_list(ContactEvaluation *evaluation, const ContactLayout *layout,
                                const ContactCandidateList *candidates, const double *positions);
 

@@ -111,7 +111,7 @@ static void meet(ContactPassageEntry *entry, const ContactPassageEntry *meeting,
 static Status reserve(ContactPassageList *list, size_t count) {
   return memory_reserve((void **)&list->entries, &list->capacity, count, sizeof *list->entries)
              ? STATUS_OK
-             : status_no_memory("who passes through whom");
+             : status_no_memory("elements that pass through bodies");
 }
 
 // The elements of the evaluation's patches; `direction` holds h.
@@ -174,7 +174,7 @@ Status contact_passage_look(ContactPassage *passage, const ContactSystem *system
   passage->passed = 0;
   if (!memory_reserve((void **)&passage->meetings, &passage->meeting_capacity, elements,
                       sizeof *passage->meetings))
-    return status_no_memory("who passes through whom");
+    return status_no_memory("elements that pass through bodies");
   TRY(reserve(&passage->next, elements + (size_t)passage->now.count));
   TRY(find_middles(passage, contact_system_layout(system)));
   find_meetings(passage, contact_system_layout(system), evaluation);

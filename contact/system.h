@@ -61,8 +61,8 @@ Status contact_system_update(ContactSystem *system, double time, const double *p
 // last update [s].
 double contact_system_longest_step(const ContactSystem *system);
 
-// Makes the next update search anew. A run does so at its checkpoints: what follows then does not depend on
-// the lists of before.
+// Makes the next update search anew. A run does so at its checkpoints, so that what follows does not depend
+// on earlier lists.
 void contact_system_forget(ContactSystem *system);
 
 // Sets which parties (bodies, then shapes) are held in place from now on; NULL: none. Held parties must not

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What friction by elastic stick (contact/friction/stick.h) remembers of the last accepted state: what was
-// dissipated until then, what acted in each interface, and the vertices in contact with their stretch in the
+// dissipated so far, what acted in each interface, and the vertices in contact with their stretch in the
 // rest frame of their body. It is one array of numbers, so it can be copied and written as it is:
 //
 //   dissipated [J]

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The neighbourhoods of a list of pairs: per interface one patch with its elements (tetrahedra that take
-// part) and nodes (their vertices), numbered in order of first appearance, and who touches whom.
+// part) and nodes (their vertices), numbered in order of first appearance, and the pairs of elements that
+// touch.
 //
 //     pair ──► 2 elements ──► 4 nodes each          after contact_patches_index also
 //     node ──► elements   ──► pairs

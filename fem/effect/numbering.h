@@ -14,8 +14,8 @@ typedef struct FemNumbering {
   double released;     // what is due until then has been released [s]
 } FemNumbering;
 
-// That of the beginning: nothing is released, nobody sleeps. A zeroed one, and one whose creation failed, can
-// be destroyed.
+// The numbering at the beginning: nothing is released, no body sleeps. A zeroed one, and one whose creation
+// failed, can be destroyed.
 Status fem_numbering_create(FemNumbering *numbering, const FemModel *model);
 void fem_numbering_destroy(FemNumbering *numbering);
 

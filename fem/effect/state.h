@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The state of a run: what forces, matrices and energies are functions of.
 //
-// An accepted state is whole: time, positions, velocities, and what effects remember by then. A state under
+// An accepted state is whole: time, positions, velocities, and what effects remember. A state under
 // trial is a step from the last accepted one, `last`: effects look there for what has been, and change
-// nothing. It belongs to whoever integrates or solves, who fills it by fem_system_scatter. A system keeps the
-// last accepted one (fem_system_accept).
+// nothing. It belongs to the integrator or to statics, which fill it by fem_system_scatter. A system keeps
+// the last accepted one (fem_system_accept).
 #ifndef TETLAP_FEM_EFFECT_STATE_H
 #define TETLAP_FEM_EFFECT_STATE_H
 

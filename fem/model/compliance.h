@@ -35,14 +35,14 @@
 // h the edge there (contact/surface/roundness.h). λ is .34, less in proportion where more than 2.2 edges
 // resolve the radius a of the patch (patch.h), and .25 where one lies in the hollow of another: radii a
 // quarter apart at most, boxes that share half of the lesser one. The bound is not used where an impact needs
-// more, where nothing tells a, and where a is more than .6 of the radius of curvature.
+// more, where a is not known, and where a is more than .6 of the radius of curvature.
 //
 // A patch of the radius a yields by π/2 a (1/E_A' + 1/E_B') for each Pa in its middle. Where that is less
 // than what whole bodies yield, the 2 % are those of the patch.
 //
 // contact.smooth is the least level at which the overlap in the middle of the patch is as deep as 2.5
 // sagittas of what is left, h²/(8 R · 4^level); 2 in a hollow, where pressures are low beside E h/R; 1 where
-// nothing tells a. Quadratic elements have their own curved edges.
+// a is not known. Quadratic elements have their own curved edges.
 #ifndef TETLAP_FEM_MODEL_COMPLIANCE_H
 #define TETLAP_FEM_MODEL_COMPLIANCE_H
 

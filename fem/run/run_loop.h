@@ -20,7 +20,8 @@ Status fem_run_loop_begin_anew(FemRunState *run);
 // Begins anew from another checkpoint of this model, which is copied. STATUS_INPUT: it is of another one.
 Status fem_run_loop_restore(FemRunState *run, const FemCheckpoint *from);
 
-// Says when a turn failed, unless whoever failed did. A retry that nobody took is the solver's failure.
+// Adds to the message of a failed turn the time at which it failed, unless the message says it. A step that
+// no shorter one can replace (RETRY) becomes a failure of the solver.
 Status fem_run_loop_explain(const FemRunState *run, Status status);
 
 // Fills the result as far as the run came and frees all else; `status` of the last turn.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run comes to: times, counts, extremes, and on demand its trajectory.
+// The result of a run: times, counts, extremes, and on demand its trajectory.
 #ifndef TETLAP_FEM_RUN_RUN_RESULT_H
 #define TETLAP_FEM_RUN_RUN_RESULT_H
 
@@ -104,8 +104,8 @@ typedef struct FemRunTrajectory {
   double *interface_forces; // on the first side [N]               (frame_count, interface_count, 3)
 } FemRunTrajectory;
 
-// Counts of a part of the run between two checkpoints are added to those before. Whoever adds a number adds
-// it to numbers[] in fem/run/checkpoint/numbers.c as well.
+// Counts of a part of the run between two checkpoints are added to those before. A number that is added here
+// goes into numbers[] in fem/run/checkpoint/numbers.c as well.
 typedef struct FemRunResult {
   double end_time; // reached [s]
   bool is_static;
@@ -146,7 +146,7 @@ void fem_run_result_destroy(FemRunResult *result);
 // other; "inside each other": they lie so at the end.
 const char *fem_run_outcome(const FemRunResult *result, Status status);
 
-// Who lies inside of whom, on one line.
+// The bodies that lie inside of each other, on one line.
 void fem_run_describe_inside(const FemRunInside *inside, const FemModel *model, char *text, size_t size);
 // The trouble that occurred, three lines each: what, where, what to do; or "none". `model`: the one that ran.
 void fem_run_describe_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size);

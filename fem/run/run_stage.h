@@ -5,7 +5,7 @@
 
 #include "fem/run/run_state.h"
 
-// In less than this nothing moves, whatever accelerations there are [s].
+// A share of the time in which a wave crosses an element: no shorter step is tried again [s].
 double fem_run_stage_resolved(const FemModel *model);
 
 // The last accepted state, under trial.

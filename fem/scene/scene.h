@@ -100,7 +100,7 @@ typedef struct FemInnerDef {
 
 enum { FEM_MAX_INNER = 8 }; // of a body
 
-// A part of a body whose force, moment, pressure, area and displacement are told.
+// A part of a body whose force, moment, pressure, area and displacement are in the history.
 typedef struct FemProbeDef {
   FemSelectDef select; // the first member
   char *name;
@@ -188,7 +188,8 @@ typedef struct FemContactDef {
   char *overlap; // name of the overlap model
   OverlapOptions net_options;
   double margin; // [m]; 0: chosen
-  int smooth;    // how often the edges of curved surfaces are halved for contact; 0: facets as they are; −1: chosen
+  int smooth; // how often the edges of curved surfaces are halved for contact; 0: facets as they are; −1:
+              // chosen
   double crease; // edges between faces that make more stay sharp [°]
   bool use_full_hessian;
   double friction;                      // coefficient μ between any two; 0: none

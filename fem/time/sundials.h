@@ -20,8 +20,8 @@ static inline void fem_sundials_ignore(int code, const char *module, const char 
   (void)code, (void)module, (void)function, (void)message, (void)self;
 }
 
-// For one process: whoever divides the work over ranks is us. Nothing is printed by what is created in it,
-// once FEM_SUNDIALS_SILENCE was applied to that. False: no memory.
+// For one process: the program itself divides the work over ranks. Nothing is printed by what is created in
+// it, once FEM_SUNDIALS_SILENCE was applied to that. False: no memory.
 static inline bool fem_sundials_create(SUNContext *context) {
   return SUNContext_Create(NULL, context) == 0;
 }

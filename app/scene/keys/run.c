@@ -42,7 +42,7 @@ static const SceneKey time_keys[] = {
     {"initial_step", SCENE_NUMBER, AT(FemSceneDef, initial_step), .unit = "s", .range = "(0, inf)",
      .absent_help = "the integrator's choice", .help = "first step"},
     {"min_step", SCENE_NUMBER, AT(FemSceneDef, min_step), .unit = "s", .range = "(0, inf)",
-     .absent_help = "1e-11 of `end`",
+     .absent_help = "1e-12 of `end`",
      .help = "a run that needs shorter steps is given up; rows of tables closer than this count as one"},
     {"max_order", SCENE_INTEGER, AT(FemSceneDef, max_order), .range = "[1, 2]", .fallback = "2",
      .help = "of the backward differentiation formula; 1 damps more"},

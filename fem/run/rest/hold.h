@@ -8,7 +8,7 @@
 #include "fem/run/rest/rest.h"
 #include "fem/time/audit.h"
 
-// Takes the unknowns of bodies that sleep and gives them to those that awoke.
+// Removes the unknowns of bodies that have fallen asleep, and adds those of bodies that have awoken.
 // What falls asleep stands still in the state from now on; its kinetic energy is counted by `rest`. u and v
 // (unknown_count) are the state's.
 Status fem_hold_sleepers(FemSystem *system, FemRest *rest, FemState *state, double *u, double *v);

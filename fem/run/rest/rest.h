@@ -13,7 +13,7 @@
 // moves are continuous; when an island awakes its forces are those with which it fell asleep. Of the energy
 // only the kinetic energy of what falls asleep is lost, at most ½ m speed², and none is ever gained.
 //
-// All is decided from accepted states, and goes through checkpoints.
+// Decisions follow from accepted states alone; checkpoints keep what they need.
 #ifndef TETLAP_FEM_RUN_REST_REST_H
 #define TETLAP_FEM_RUN_REST_REST_H
 
