@@ -123,14 +123,6 @@ void fem_element_damping_force(const FemElement *element, const FemMaterial *mat
   spread_stress(element, P, force);
 }
 
-double fem_element_damping_power(const FemElement *element, const FemMaterial *material, double beta,
-                                 const double x[12], const double v[12]) {
-  double F[9], rate[9];
-  fem_element_deformation(element, x, F);
-  fem_element_deformation(element, v, rate);
-  return element->volume * fem_viscous_power(material, beta, F, rate);
-}
-
 void fem_element_damping_matrix(const FemElement *element, const FemMaterial *material, double beta,
                                 const double x[12], double matrix[144]) {
   double F[9], dP[81];

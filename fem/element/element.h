@@ -29,11 +29,9 @@ void fem_element_stiffness(const FemElement *element, const FemMaterial *materia
 void fem_element_spread_tangent(const FemElement *element, const double dP[81], double matrix[144]);
 
 // Stiffness-proportional damping and viscosity (fem/material/viscous.h): R = ½ β V Ė:C:Ė; at rest the matrix
-// is β K. Force −∂R/∂v, power 2R = −v · force ≥ 0, matrix ∂²R/∂v² (≥ 0).
+// is β K. Force −∂R/∂v, matrix ∂²R/∂v² (≥ 0).
 void fem_element_damping_force(const FemElement *element, const FemMaterial *material, double beta,
                                const double x[12], const double v[12], double force[12]); // [N]
-double fem_element_damping_power(const FemElement *element, const FemMaterial *material, double beta,
-                                 const double x[12], const double v[12]); // [W]
 void fem_element_damping_matrix(const FemElement *element, const FemMaterial *material, double beta,
                                 const double x[12], double matrix[144]); // [N s/m]
 // The geometric part of −∂(damping force)/∂x (fem/material/viscous.h). May be indefinite.

@@ -179,18 +179,6 @@ void fem_quadratic_damping_force(const FemQuadratic *element, const FemMaterial 
   }
 }
 
-double fem_quadratic_damping_power(const FemQuadratic *element, const FemMaterial *material, double beta,
-                                   const double x[30], const double v[30]) {
-  double F[9], rate[9], power = 0;
-  for (int p = 0; p < POINTS; p++) {
-    FemPoint point = fem_quadratic_point(element, p);
-    fem_point_deformation(&point, x, F);
-    fem_point_deformation(&point, v, rate);
-    power += point.weight * fem_viscous_power(material, beta, F, rate);
-  }
-  return power;
-}
-
 void fem_quadratic_damping_matrix(const FemQuadratic *element, const FemMaterial *material, double beta,
                                   const double x[30], const double v[30], double stiffness_scale,
                                   double damping_scale, double matrix[900]) {

@@ -71,8 +71,6 @@ void fem_quadratic_stiffness(const FemQuadratic *element, FemQuadraticLaw law, c
 // Damping as in fem/element/element.h, by fem/material/viscous.h at each point.
 void fem_quadratic_damping_force(const FemQuadratic *element, const FemMaterial *material, double beta,
                                  const double x[30], const double v[30], double force[30]);
-double fem_quadratic_damping_power(const FemQuadratic *element, const FemMaterial *material, double beta,
-                                   const double x[30], const double v[30]);
 // damping_scale ∂²R/∂v² + stiffness_scale · the symmetric part of −∂(damping force)/∂x.
 void fem_quadratic_damping_matrix(const FemQuadratic *element, const FemMaterial *material, double beta,
                                   const double x[30], const double v[30], double stiffness_scale,

@@ -33,13 +33,6 @@ void fem_viscous_stress(const FemMaterial *material, double beta, const double F
       P[3 * i + j] = F[3 * i] * stress[j] + F[3 * i + 1] * stress[3 + j] + F[3 * i + 2] * stress[6 + j];
 }
 
-double fem_viscous_power(const FemMaterial *material, double beta, const double F[9], const double rate[9]) {
-  double strain_rate[9], stress[9], power = 0;
-  find_stress(material, beta, damped_deformation(material, F), rate, strain_rate, stress);
-  for (int r = 0; r < 9; r++) power += strain_rate[r] * stress[r];
-  return power;
-}
-
 void fem_viscous_tangent(const FemMaterial *material, double beta, const double F[9], double dP[81]) {
   fem_material_pushed_stiffness(fem_material_viscous(material, beta), damped_deformation(material, F), dP);
 }

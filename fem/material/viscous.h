@@ -10,8 +10,6 @@
 // P_v = ∂R/∂Ḟ = F Σ, Σ = C_v : Ė [Pa].
 void fem_viscous_stress(const FemMaterial *material, double beta, const double F[9], const double rate[9],
                         double P[9]);
-// 2R = Ė:C_v:Ė ≥ 0 [W/m³].
-double fem_viscous_power(const FemMaterial *material, double beta, const double F[9], const double rate[9]);
 // ∂P_v/∂Ḟ [Pa s], symmetric, ≥ 0.
 void fem_viscous_tangent(const FemMaterial *material, double beta, const double F[9], double dP[81]);
 // The geometric part of ∂P_v/∂F [Pa], ∂F Σ: symmetric, perhaps indefinite, zero for the law linear. The rest,

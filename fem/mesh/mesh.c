@@ -6,7 +6,6 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "base/files/file.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 
@@ -162,21 +161,4 @@ Status fem_mesh_place(FemMesh *mesh, const FemPlacement *placement) {
     mesh->tets[e][3] = kept;
   }
   return STATUS_OK;
-}
-
-Status fem_mesh_write_medit(const FemMesh *mesh, const char *path) {
-  FileWriter writer;
-  TRY(file_begin(&writer, path));
-  fprintf(writer.stream, "MeshVersionFormatted 2\nDimension 3\nVertices\n%d\n", mesh->vertex_count);
-  for (int v = 0; v < mesh->vertex_count; v++) {
-    const double *x = mesh->rest + 3 * (size_t)v;
-    fprintf(writer.stream, "%.17g %.17g %.17g 0\n", x[0], x[1], x[2]);
-  }
-  fprintf(writer.stream, "Tetrahedra\n%d\n", mesh->tet_count);
-  for (int t = 0; t < mesh->tet_count; t++) {
-    const int *tet = mesh->tets[t];
-    fprintf(writer.stream, "%d %d %d %d 1\n", tet[0] + 1, tet[1] + 1, tet[2] + 1, tet[3] + 1);
-  }
-  fprintf(writer.stream, "End\n");
-  return file_commit(&writer);
 }

@@ -94,9 +94,6 @@ void fem_mesh_destroy(FemMesh *mesh);
 // A mesh of its own with the same content. STATUS_MEMORY: the copy is zeroed.
 Status fem_mesh_copy(FemMesh *copy, const FemMesh *mesh);
 
-// For tests and tools: MEDIT .mesh, without groups.
-Status fem_mesh_write_medit(const FemMesh *mesh, const char *path);
-
 typedef struct FemMeshQuality {
   double volume;                 // [m³]
   double box_min[3], box_max[3]; // [m]

@@ -215,7 +215,6 @@ START_TEST(rigid_motion_gives_no_force_and_no_damping) {
     spin_about(x, (const double[3]){3, -1, 2}, (const double[3]){0.4, -2, 1}, v);
     fem_element_damping_force(&element, &material, 0.7, x, v, force);
     for (int r = 0; r < 12; r++) ck_assert_near(force[r], 0, 1e-13);
-    ck_assert_near(fem_element_damping_power(&element, &material, 0.7, x, v), 0, 1e-25);
   }
 }
 END_TEST
@@ -268,7 +267,7 @@ START_TEST(at_rest_damping_is_beta_times_stiffness) {
 END_TEST
 
 // The force is linear in v, so the matrix gives it exactly; the power is never negative.
-START_TEST(damping_force_matrix_and_power_agree) {
+START_TEST(damping_force_and_matrix_agree) {
   FemMaterial material = make_material(_i);
   Random random = random_seeded(49, 0);
   for (int k = 0; k < 20 * SAMPLES; k++) {
@@ -281,9 +280,7 @@ START_TEST(damping_force_matrix_and_power_agree) {
     fem_element_damping_matrix(&element, &material, 0.7, x, matrix);
     double scale = fmax(1, largest_entry(matrix, 144));
     for (int r = 0; r < 12; r++) ck_assert_near(force[r], -dot12(matrix + 12 * r, v), 1e-13 * scale);
-    double power = fem_element_damping_power(&element, &material, 0.7, x, v);
-    ck_assert(power > 0);
-    ck_assert_near(power, -dot12(force, v), 1e-12 * scale);
+    ck_assert_double_lt(dot12(force, v), 0);
   }
 }
 END_TEST
@@ -449,7 +446,7 @@ int main(void) {
   tcase_add_test(cases, rigid_spin_of_a_deformed_element_is_not_damped);
   tcase_add_loop_test(cases, forces_and_torques_of_an_element_balance, 1, FEM_MATERIAL_LAW_COUNT);
   tcase_add_loop_test(cases, at_rest_damping_is_beta_times_stiffness, 0, FEM_MATERIAL_LAW_COUNT);
-  tcase_add_loop_test(cases, damping_force_matrix_and_power_agree, 0, FEM_MATERIAL_LAW_COUNT);
+  tcase_add_loop_test(cases, damping_force_and_matrix_agree, 0, FEM_MATERIAL_LAW_COUNT);
   tcase_add_test(cases, damping_stiffness_has_the_derivative_of_forces_that_turn_or_move_a_body);
   tcase_add_loop_test(cases, a_patch_of_elements_carries_uniform_stress, 0, FEM_MATERIAL_LAW_COUNT);
   tcase_add_test(cases, cauchy_stress_of_simple_states);

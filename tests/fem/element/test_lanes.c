@@ -133,11 +133,10 @@ START_TEST(damping_forces_and_matrices_are_those_of_single_elements) {
       all[k]->damping_power(&material, 0.1, &eight.lanes, eight.x, eight.v, power);
       for (int l = 0; l < FEM_LANES; l++) {
         const double *x = eight.x + 12 * l, *v = eight.v + 12 * l;
-        check_scalar(power[l], fem_element_damping_power(&eight.element[l], &material, 0.1, x, v), round,
-                     all[k]->name);
-        double expected[144], part[144];
-        fem_element_damping_force(&eight.element[l], &material, 0.1, eight.x + 12 * l, eight.v + 12 * l,
-                                  expected);
+        double expected[144], part[144], taken = 0;
+        fem_element_damping_force(&eight.element[l], &material, 0.1, x, v, expected);
+        for (int r = 0; r < 12; r++) taken -= expected[r] * v[r];
+        check_scalar(power[l], taken, round, all[k]->name);
         check_forces(force, l, expected, allowed[round % 4], all[k]->name);
         fem_element_damping_stiffness(&eight.element[l], &material, 0.1, eight.x + 12 * l, eight.v + 12 * l,
                                       expected);

@@ -402,15 +402,6 @@ START_TEST(an_impossible_placement_is_refused_and_changes_nothing) {
 }
 END_TEST
 
-START_TEST(writing_to_no_place_fails_with_the_path) {
-  FemMesh mesh;
-  make_bumpy(&mesh);
-  ck_assert_int_eq(fem_mesh_write_medit(&mesh, "/proc/no/such.mesh"), STATUS_IO);
-  ck_assert_ptr_nonnull(strstr(status_message(), "/proc/no/such.mesh"));
-  fem_mesh_destroy(&mesh);
-}
-END_TEST
-
 static Status make_from_arrays(const FemMesh *source) {
   FemMesh mesh;
   Status status = fem_mesh_from_arrays(&mesh, "o", source->vertex_count, source->rest, source->tet_count,
@@ -478,7 +469,6 @@ int main(void) {
   tcase_add_test(cases, a_rotation_about_a_diagonal_permutes_the_axes);
   tcase_add_test(cases, a_mirror_keeps_the_orientation_positive);
   tcase_add_test(cases, an_impossible_placement_is_refused_and_changes_nothing);
-  tcase_add_test(cases, writing_to_no_place_fails_with_the_path);
   tcase_add_test(cases, every_failed_allocation_is_an_error);
   return suite_run("mesh", cases, 30);
 }
