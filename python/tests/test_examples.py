@@ -3,8 +3,11 @@
 
 import os
 import sys
+import tempfile
 import unittest
 from pathlib import Path
+
+import numpy as np
 
 sys.path.insert(0, str(Path(os.environ["TETLAP_SOURCE_DIR"], "examples", "python")))
 
@@ -43,6 +46,25 @@ class Examples(unittest.TestCase):
             self.assertLess(max(abs(material - identify.TRUTH) / spread), 3)
             self.assertLess(max(spread / identify.TRUTH), 0.02)
             self.assertLess(misfit, 15)  # six numbers, two parameters
+
+    def test_twenty_labelled_indentations_are_what_their_labels_say(self):
+        import indent
+
+        with tempfile.TemporaryDirectory() as folder:
+            results = indent.main(folder, count=20, seed=7)
+            self.assertEqual((len(results), results.failures), (20, []))
+            pressure, position, force = results["pressure"], results["position"], -results["force"][:, 2]
+            np.testing.assert_array_equal(position, [[p["x"], p["y"]] for p in indent.draw(30, 7)[:20]])
+        integral = (pressure * indent.shares()).sum(axis=(1, 2))
+        np.testing.assert_allclose(integral, force, rtol=1e-9)
+        self.assertTrue((force > 0.01).all())
+        axis = np.linspace(-indent.SIDE / 2, indent.SIDE / 2, indent.CELLS + 1)
+        moments = np.einsum("nxy,xy,x->n", pressure, indent.shares(), axis), np.einsum("nxy,xy,y->n", pressure, indent.shares(), axis)
+        cell = indent.SIDE / indent.CELLS
+        np.testing.assert_allclose(np.stack(moments, 1) / integral[:, None], position, atol=0.3 * cell)
+        # A ball that is pressed deeper presses more; Hertz has depth^1.5, and a thin pad more.
+        order = np.argsort(results["depth"])
+        self.assertGreater(np.corrcoef(results["depth"][order], force[order])[0, 1], 0.95)
 
 
 if __name__ == "__main__":
