@@ -4,7 +4,9 @@
 import os
 import sys
 import tempfile
+import types
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import numpy as np
@@ -65,6 +67,33 @@ class Examples(unittest.TestCase):
         # A ball that is pressed deeper presses more; Hertz has depth^1.5, and a thin pad more.
         order = np.argsort(results["depth"])
         self.assertGreater(np.corrcoef(results["depth"][order], force[order])[0, 1], 0.95)
+
+    def test_the_environment_is_one_of_gymnasium_and_its_controller_reaches_the_mark(self):
+        """Debian has no gymnasium: a stand-in has what the example takes from it."""
+
+        class Env:
+            def reset(self, *, seed=None, options=None):
+                self.np_random = np.random.default_rng(seed)
+
+        class Box:
+            def __init__(self, low, high, shape):
+                self.low, self.high, self.shape = low, high, shape
+
+        gymnasium = types.SimpleNamespace(Env=Env, spaces=types.SimpleNamespace(Box=Box))
+        with unittest.mock.patch.dict(sys.modules, gymnasium=gymnasium):
+            import gym_push
+        env = gym_push.Push()
+        first, about = env.reset(seed=5)
+        observed, reward, reached, late, _ = env.step(np.array([8.0]))
+        self.assertEqual((first.shape, about, reached, late), ((3,), {}, False, False))
+        self.assertGreater(observed[1], 0)
+        self.assertLess(reward, 0)
+        np.testing.assert_array_equal(env.reset(seed=5)[0], first)
+        np.testing.assert_array_equal(env.step(np.array([8.0]))[0], observed)
+        env.close()
+        x, mark, reached = gym_push.main()
+        self.assertTrue(reached)
+        self.assertLess(abs(x - mark), 1.01e-3)
 
 
 if __name__ == "__main__":

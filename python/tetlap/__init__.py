@@ -15,7 +15,7 @@
     poses                       overlap volume and wrench of many rigid poses of a body
 """
 
-from ._compare import Compared, compare
+from ._compare import Compared, Comparison, compare
 from ._errors import Error, RunError, UnknownNameError
 from ._gradient import gradient
 from ._library import Model, models
@@ -28,7 +28,7 @@ from ._simulation import Body, Contact, Drive, Loads, Simulation, State
 from ._table import Failure, Results
 from ._volumes import Flag, MeshPairs, Overlap, mesh_overlap, mesh_pairs, overlap
 
-__all__ = ["Body", "Compared", "Contact", "Drive", "Error", "Failure", "Flag", "Frame", "Frames", "Loads", "MeshPairs", "Model", "Overlap",
+__all__ = ["Body", "Compared", "Comparison", "Contact", "Drive", "Error", "Failure", "Flag", "Frame", "Frames", "Loads", "MeshPairs", "Model", "Overlap",
            "Poses", "Results", "Run", "RunError", "Simulation", "State", "UnknownNameError", "compare", "evaluate", "gradient", "load_pairs",
            "map", "mesh_overlap", "mesh_pairs", "models", "overlap", "poses",
            "read", "run"]

@@ -6,7 +6,7 @@ import subprocess
 from collections.abc import Mapping
 from pathlib import Path
 
-from . import _locate
+from . import _locate, _views
 from ._errors import RunError
 from ._results import Run
 from ._run import _SERVER_S, _Folder, _place_scene, _Server, _Words
@@ -28,6 +28,16 @@ class Compared:
     def __repr__(self):
         error = self.errors.get("force_error_l2")
         return f"<Compared {self.name}: {self.outcome}, error of forces {error if error is None else format(error, '.3g')}>"
+
+
+class Comparison(dict):
+    """The `Compared` of each model by its name; in a notebook a table of their errors."""
+
+    def _repr_html_(self):
+        wanted = ("force_error_l2", "trajectory_error", "audit_force_error", "audit_volume_error")
+        names = [name for name in wanted if any(name in model.errors for model in self.values())]
+        rows = [(model.name, model.outcome, *(_views.digits(model.errors.get(name)) for name in names)) for model in self.values()]
+        return _views.grid_html("Comparison of overlap models", ("model", "outcome", *names), rows)
 
 
 def _serve(models):
@@ -69,7 +79,7 @@ def _execute(command, servers):
 
 
 def compare(scene, models, directory=None, *, set=None, reference=None, audit=None, threads=None):
-    """Runs a scene with several overlap models; a dict of `Compared` by the models' names.
+    """Runs a scene with several overlap models; a `Comparison`: a dict of `Compared` by the models' names.
 
     scene: a scene file's path, or a dict with the same keys (docs/scene.md).
     models: {"clip": "clip", "mine": f}: what each is called, and its name, its file, or a function or torch.nn.Module that takes
@@ -101,7 +111,7 @@ def compare(scene, models, directory=None, *, set=None, reference=None, audit=No
     finally:
         for server in servers:
             server.hand_over()
-    compared = {}
+    compared = Comparison()
     for name, row in zip(models, rows):
         folder = Path(directory, row["model"])
         compared[name] = Compared(name, row, Run(folder, keeper) if folder.is_dir() else None)

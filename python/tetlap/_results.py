@@ -3,11 +3,14 @@
 
 import json
 import os
+import subprocess
+import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
+from . import _locate, _views
 from ._errors import Error, UnknownNameError
 from ._vtu import read_pvd, read_vtu
 
@@ -38,7 +41,16 @@ class Frame:
 
     @property
     def names(self):
+        """Of the arrays of points and of cells."""
         return [*self.point_data, *self.cell_data]
+
+    def to_meshio(self):
+        """A `meshio.Mesh` of the cells with all arrays. Error: there is no package meshio."""
+        return _views.to_meshio(self.points, self.cells, self.point_data, self.cell_data)
+
+    def to_pyvista(self):
+        """A `pyvista.UnstructuredGrid` of the cells with all arrays. Error: there is no package pyvista."""
+        return _views.to_pyvista(self.points, self.cells, self.point_data, self.cell_data)
 
     def __repr__(self):
         return f"<Frame t={self.time} points={len(self.points)} cells={len(self.cells)}>"
@@ -138,6 +150,34 @@ class Run:
     def outcome(self):
         """"finished", "interrupted", "failed", or None while the run goes on."""
         return self.summary["outcome"] if self.summary else None
+
+    def to_xarray(self):
+        """An `xarray.Dataset` of the history: its columns over the coordinate `time_s`, and `points` (time_s, vertex, xyz) [m] of the frames where
+        there is one a row. Error: there is no package xarray, or the run wrote no history."""
+        xarray = _views.need("xarray")
+        if self.history is None:
+            raise Error(f"{self.directory}: the run wrote no history.csv")
+        names = [name for name in self.history.dtype.names if name != "time_s"]
+        columns = {name: ("time_s", self.history[name]) for name in names}
+        if self.frames and len(self.frames) == len(self.history):
+            columns["points"] = (("time_s", "vertex", "xyz"), self.frames.array("points"))
+        return xarray.Dataset(columns, coords={"time_s": self.history["time_s"]}, attrs={"directory": os.fspath(self.directory)})
+
+    def _repr_html_(self):
+        """In a notebook: the page of `tetlap report`, which needs no network; a table where it cannot be made."""
+        with tempfile.TemporaryDirectory(prefix="tetlap-") as folder:
+            page = Path(folder, "page.html")
+            try:
+                done = subprocess.run([_locate.program(), "report", os.fspath(self.directory), "-o", os.fspath(page)], stdin=subprocess.DEVNULL,
+                                      capture_output=True, check=False)
+                if done.returncode == 0 and page.is_file():
+                    return _views.page_html(page.read_text(encoding="utf-8"))
+            except (Error, OSError):
+                pass
+        summary = self.summary or {}
+        wanted = ("end_time_s", "steps", "newton_iterations", "wall_s", "contact_force_max")
+        rows = [("outcome", self.outcome or "goes on"), ("frames", len(self.frames))]
+        return _views.table_html(f"Run {self.directory}", rows + [(name, _views.digits(summary[name])) for name in wanted if name in summary])
 
     def __repr__(self):
         return f"<Run {os.fspath(self.directory)}: {self.outcome}, {len(self.frames)} frames>"

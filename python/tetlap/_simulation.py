@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import _channel
+from . import _channel, _views
 from ._channel import Channel
 from ._errors import Error, UnknownNameError
 from ._run import _Folder, _Server
@@ -67,6 +67,20 @@ class Body:
         """Of the same [Pa], (m)."""
         xx, yy, zz, xy, yz, xz = self.stress.T
         return np.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy**2 + yz**2 + xz**2))
+
+    def _fields(self):
+        """Positions, tetrahedra, and arrays of vertices and of tetrahedra, copied: the present."""
+        own = {} if self.is_obstacle else {"stress": self.stress.copy(), "von_mises": self.von_mises}
+        return (self.points.copy(), self.tets.copy(),
+                {"velocity": self.velocities.copy(), "contact_force": self.forces.copy(), "contact_pressure": self.pressure.copy()}, own)
+
+    def to_meshio(self):
+        """A `meshio.Mesh` of the present, copied, with velocities, forces, pressure and stress. Error: there is no package meshio."""
+        return _views.to_meshio(*self._fields())
+
+    def to_pyvista(self):
+        """A `pyvista.UnstructuredGrid` of the same. Error: there is no package pyvista."""
+        return _views.to_pyvista(*self._fields())
 
     def __repr__(self):
         return f"<Body {self.name!r}: {len(self.points)} vertices, {len(self.tets)} tetrahedra>"
@@ -417,6 +431,20 @@ class Simulation:
     def record(self, path: str | os.PathLike) -> None:
         """Writes what was set so far, and when, as lines of JSON: `tetlap run SCENE --replay PATH` does the same again."""
         self._channel.ask(_channel.RECORD, os.fspath(path).encode())
+
+    def _repr_html_(self):
+        """In a notebook: what touches, and a picture of the bodies at the present time, coloured by speed."""
+        if not self._channel.is_open:
+            return _views.table_html(repr(self), [])
+        rows = [(f"{a}, {b}", contact.force.round(6).tolist(), _views.digits(contact.area)) for (a, b), contact in self.contacts.items() if contact.touches]
+        title = f"t = {self.time:.6g} of {self.end:.6g} s; {len(self.bodies)} bodies"
+        bodies = list(self.bodies.values())
+        points = np.concatenate([body.points for body in bodies])
+        speed = np.concatenate([np.linalg.norm(body.velocities, axis=1) for body in bodies])
+        begins = np.cumsum([0, *(len(body.points) for body in bodies)])
+        tets = np.concatenate([body.tets + begin for body, begin in zip(bodies, begins)])
+        picture = _views.outline_svg(points, tets, speed / max(speed.max(), 1e-300))
+        return _views.grid_html(title, ("contact", "force [N]", "area [m²]"), rows) + picture
 
     def __repr__(self):
         what = f"t = {self.time:.6g} of {self.end:.6g} s" if self._channel.is_open else "closed"
