@@ -346,6 +346,7 @@ static Status find(FemChange *change, FemVaried *varied, const FemTangent *tange
   case FEM_PARAMETER_PAIR_STIFFNESS:
     rate_contact(change, tangent, parameter);
     break;
+  case FEM_PARAMETER_START:
   case FEM_PARAMETER_MOTION_ALONE:
     break;
   }

@@ -224,8 +224,6 @@ static Status check_body(const FemBodyDef *body) {
 
 static Status check_scene(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
-  if (!scene->is_static)
-    return status_fail(STATUS_INPUT, "the scene moves; gradients are of static scenes: time: {static: true}");
   if (model->free_count == 0) return status_fail(STATUS_INPUT, "nothing moves freely in the scene");
   if (model->share) return status_fail(STATUS_INPUT, "gradients are found by one process: run tetlap alone");
   TRY(check_contact(scene));
@@ -242,7 +240,7 @@ Status fem_gradient_check(const FemModel *model, const FemGradientDef *def) {
   return STATUS_OK;
 }
 
-static Status allocate(FemGradient *gradient, const FemGradientDef *def) {
+Status fem_gradient_create(FemGradient *gradient, const FemGradientDef *def) {
   size_t goals = (size_t)def->goal_count;
   *gradient =
       (FemGradient){.values = memory_zeroed(goals, sizeof(double)),
@@ -254,8 +252,10 @@ static Status allocate(FemGradient *gradient, const FemGradientDef *def) {
 }
 
 Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGradientDef *def) {
-  TRY(allocate(gradient, def));
+  TRY(fem_gradient_create(gradient, def));
   TRY(fem_gradient_check(system->model, def));
+  if (!system->model->scene->is_static)
+    return status_fail(STATUS_INPUT, "the scene moves: it ends in no equilibrium");
   Adjoint adjoint;
   Status status = create(&adjoint, system, def);
   if (!status) status = find(gradient, &adjoint);

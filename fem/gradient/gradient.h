@@ -23,7 +23,8 @@ typedef struct FemGradient {
   double unbalanced; // largest force on an unknown, as a share of the largest on a vertex
   double *values;    // g, owned                                            (goal_count)
   double *residuals; // |∂g/∂x − K λ| / |∂g/∂x|, owned                      (goal_count)
-  double *mismatches; // |K λ + ∂f/∂x λ| / |K λ|, ∂f/∂x λ by differences of forces, owned (goal_count)
+  double *mismatches; // |K λ + ∂f/∂x λ| / |K λ|, ∂f/∂x λ by differences of forces; NaN of a motion; owned
+                      // (goal_count)
   double *derivatives; // dg/dp, owned                       (goal_count, parameter_count)
 } FemGradient;
 
@@ -33,6 +34,8 @@ Status fem_gradient_check(const FemModel *model, const FemGradientDef *def);
 // is not positive definite, so that the equilibrium is no stable one. Destroy the gradient also after a
 // failure.
 Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGradientDef *def);
+// Room for the results, all 0.
+Status fem_gradient_create(FemGradient *gradient, const FemGradientDef *def);
 void fem_gradient_destroy(FemGradient *gradient); // also of a zeroed one
 
 #endif

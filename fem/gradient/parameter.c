@@ -125,10 +125,14 @@ Status fem_parameter_check(const FemModel *model, const FemParameter *parameter)
     return check_stiffness(model);
   case FEM_PARAMETER_PAIR_STIFFNESS:
     return check_pair(model, parameter);
+  case FEM_PARAMETER_MOTION_ALONE:
+    if (!model->scene->is_static)
+      return status_fail(STATUS_INPUT, "there is no derivative by damping or viscosity in a motion");
+    break;
   case FEM_PARAMETER_DENSITY:
   case FEM_PARAMETER_GRAVITY:
   case FEM_PARAMETER_PLACE:
-  case FEM_PARAMETER_MOTION_ALONE:
+  case FEM_PARAMETER_START:
     break;
   }
   return STATUS_OK;
@@ -150,6 +154,7 @@ static const char *idle_of_law(const FemModel *model, const FemParameter *parame
 
 static const char *idle_density(const FemModel *model) {
   const double *g = model->scene->gravity;
+  if (!model->scene->is_static) return NULL;
   bool is_heavy = model->scene->has_gravity && (g[0] != 0 || g[1] != 0 || g[2] != 0);
   return is_heavy ? NULL : "a density acts by gravity alone, which the scene does not have";
 }
@@ -168,8 +173,9 @@ const char *fem_parameter_idle(const FemModel *model, const FemParameter *parame
     return idle_of_law(model, parameter, FEM_MATERIAL_OGDEN);
   case FEM_PARAMETER_OGDEN_SHARE:
     return idle_of_law(model, parameter, FEM_MATERIAL_OGDEN);
+  case FEM_PARAMETER_START:
   case FEM_PARAMETER_MOTION_ALONE:
-    return "it acts in motions alone, and the scene is static";
+    return model->scene->is_static ? "it acts in motions alone, and the scene is static" : NULL;
   default:
     return NULL;
   }
@@ -241,6 +247,8 @@ double fem_parameter_value(const FemModel *model, const FemParameter *parameter)
     return contact_of(model)->stiffness;
   case FEM_PARAMETER_PAIR_STIFFNESS:
     return contact_of(model)->pairs[parameter->item].stiffness;
+  case FEM_PARAMETER_START:
+    return model->scene->bodies[parameter->body].velocity[parameter->component];
   case FEM_PARAMETER_MOTION_ALONE:
     return NAN;
   default:
@@ -272,6 +280,7 @@ const char *fem_parameter_unit(const FemModel *model, const FemParameter *parame
   case FEM_PARAMETER_LOAD:
     return unit_of_load(model->scene->bodies[parameter->body].loads[parameter->item].kind);
   case FEM_PARAMETER_VELOCITY:
+  case FEM_PARAMETER_START:
     return "m/s";
   case FEM_PARAMETER_AMPLITUDE:
   case FEM_PARAMETER_TABLE:

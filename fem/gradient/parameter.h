@@ -23,7 +23,8 @@ typedef enum FemParameterKind {
   FEM_PARAMETER_PLACE,             // a coordinate of where a body or an obstacle stands [m]
   FEM_PARAMETER_CONTACT_STIFFNESS, // κ as the scene gives it for all pairs
   FEM_PARAMETER_PAIR_STIFFNESS,    // κ of contact.pairs[item]
-  FEM_PARAMETER_MOTION_ALONE,      // what acts in motions alone: damping, viscosities, initial velocities
+  FEM_PARAMETER_START,             // a component of the velocity that a body starts with [m/s]
+  FEM_PARAMETER_MOTION_ALONE,      // what acts in motions alone: damping, viscosities
 } FemParameterKind;
 
 typedef struct FemParameter {

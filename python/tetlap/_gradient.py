@@ -56,14 +56,14 @@ def _arrays(found, of, by):
         "parameter_unit": [cell["unit"] for cell in rows[0]],
         "does_not_act": {key: cell["does_not_act"] for key, cell in zip(by, rows[0]) if cell["does_not_act"]},
         "adjoint_residual": np.array([goal["adjoint_residual"] for goal in goals]),
-        "matrix_residual": np.array([goal["matrix_residual"] for goal in goals]),
+        "matrix_residual": np.array([_number(goal["matrix_residual"]) for goal in goals]),
         "force_residual": found["force_residual"],
         "contact_stiffness": found["contact_stiffness"],
     }
 
 
 def gradient(scene, of, by, *, set=None, total=False):
-    """Runs a static scene without friction to its end; what quantities are there, and their exact derivatives, as a dict of arrays.
+    """Runs a static scene without friction, or a motion without friction and damping, to its end; what quantities are there, and their exact derivatives, as a dict of arrays.
 
     scene: a scene file's path, or a dict with the same keys (docs/scene.md). Nothing is written.
     of: a quantity, "force:ball:ground:z", or a list of them (docs/gradients.md).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/gradient/gradient.h"
+#include "fem/gradient/motion.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -64,11 +64,16 @@ typedef struct Asked {
   FemGoal goals[MAX_GOALS];
   FemParameter parameters[MAX_PARAMETERS];
   FemGradientDef def;
+  FemMotionSteps steps; // of a motion
   FemGradient gradient;
 } Asked;
 
-static Status at_end(void *observer, const FemRunProgress *progress) {
+static Status at_step(void *observer, const FemRunProgress *progress) {
   Asked *asked = observer;
+  FemMotionSteps *steps = &asked->steps;
+  if (!progress->system->model->scene->is_static)
+    return progress->time > steps->times[steps->count - 1] ? fem_motion_steps_add(steps, progress->time)
+                                                           : STATUS_OK;
   if (progress->time < progress->end) return STATUS_OK;
   fem_gradient_destroy(&asked->gradient);
   return fem_gradient_find(&asked->gradient, progress->system, &asked->def);
@@ -106,9 +111,13 @@ static Status print_plain(const Options *options, const FemModel *model, const A
     Row rows[MAX_PARAMETERS];
     AppTablePart part = {columns, sizeof columns / sizeof *columns, rows, sizeof *rows};
     fill_rows(options, model, asked, g, rows);
-    printf("g = %s = %.10g %s; residual of the adjoint %.1e, of the forces %.1e, of the matrix %.1e\n",
-           options->of[g], gradient->values[g], app_gradient_unit(&asked->goals[g], options->of[g]),
-           gradient->residuals[g], gradient->unbalanced, gradient->mismatches[g]);
+    printf("g = %s = %.10g %s; residual of the adjoint %.1e, of the forces %.1e", options->of[g],
+           gradient->values[g], app_gradient_unit(&asked->goals[g], options->of[g]), gradient->residuals[g],
+           gradient->unbalanced);
+    if (asked->steps.count > 0)
+      printf("; a replay of %d steps\n", asked->steps.count - 1);
+    else
+      printf(", of the matrix %.1e\n", gradient->mismatches[g]);
     TRY(app_table_print(&(AppTable){&part, 1, options->by_count}, APP_TABLE_PLAIN, stdout));
   }
   return STATUS_OK;
@@ -131,6 +140,7 @@ static Status print_json(const Options *options, const FemModel *model, const As
   Record *record = record_new();
   if (!record) return status_no_memory("a gradient");
   record_text(record, "contact_stiffness", stiffness_of(model, options->is_total));
+  if (asked->steps.count > 0) record_integer(record, "steps", asked->steps.count - 1);
   record_number(record, "force_residual", asked->gradient.unbalanced);
   Record *of = record_child(record, "of");
   for (int g = 0; g < options->of_count; g++)
@@ -151,21 +161,27 @@ static Status prepare(const Options *options, const FemModel *model, Asked *aske
     TRY(status_prefix(app_gradient_read_goal(model, options->of[g], &asked->goals[g]), "--of"));
   for (int p = 0; p < options->by_count; p++)
     TRY(status_prefix(app_gradient_read_parameter(model, options->by[p], &asked->parameters[p]), "--by"));
-  return fem_gradient_check(model, &asked->def);
+  TRY(fem_gradient_check(model, &asked->def));
+  if (model->scene->is_static) return STATUS_OK;
+  TRY(fem_motion_check(model, &asked->def));
+  return fem_motion_steps_add(&asked->steps, 0);
 }
 
 static Status differentiate(const Options *options, const FemModel *model) {
   Asked asked = {0};
   FemRunResult result = {0};
-  FemRunOptions run = {.observe = at_end, .observer = &asked, .stop = app_job_stop_flag()};
+  FemRunOptions run = {.observe = at_step, .observer = &asked, .stop = app_job_stop_flag()};
   Status status = prepare(options, model, &asked);
   if (!status) status = fem_run(model, &run, &result);
+  if (!status && !model->scene->is_static)
+    status = fem_motion_differentiate(&asked.gradient, model, &asked.def, &asked.steps);
   if (!status && !asked.gradient.derivatives)
     status = status_fail(STATUS_SOLVER, "the run ended before time.end: no gradient");
   if (!status)
     status = options->job.is_json ? print_json(options, model, &asked) : print_plain(options, model, &asked);
   fem_run_result_destroy(&result);
   fem_gradient_destroy(&asked.gradient);
+  fem_motion_steps_destroy(&asked.steps);
   for (int g = 0; g < options->of_count; g++) app_gradient_destroy_goal(&asked.goals[g]);
   return status;
 }
@@ -191,12 +207,13 @@ static int run_command(int argument_count, char **arguments) {
 
 const AppCommand app_command_gradient = {
     .name = "gradient",
-    .help = "derivatives of what a static scene ends with by its parameters",
+    .help = "derivatives of what a scene ends with by its parameters",
     .options = option_table,
     .arguments = &(const AppArguments){"SCENE", offsetof(Options, job.scene_path), 1,
                                        .missing = "name a scene file, as in examples/26_hertz.yaml",
                                        .excess = "one scene at a time; '%s' is the second"},
-    .doc = "Run a static scene without friction to its end, and print the exact derivatives of quantities g "
+    .doc = "Run a static scene without friction, or a motion without friction and damping, to its end, and "
+           "print the exact derivatives of quantities g "
            "there by parameters p, from one solve for each g.\vThe share p dg/dp / g says by how many per "
            "cent g "
            "changes with one per cent of p. Everything else is kept. docs/gradients.md says what has a "

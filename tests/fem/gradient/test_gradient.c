@@ -285,7 +285,6 @@ static void refuse(const char *time, const char *material, const char *keys, con
 #define NU "poisson: 0.3"
 #define YOUNG "bodies.block.material.young"
 START_TEST(what_has_no_gradient_is_refused_by_name) {
-  refuse("max_step: 1e-2", NU, "", NULL, YOUNG, "the scene moves");
   refuse(STATIC, NU ", law: stvk, plasticity: {yield: 1e3}", "", NULL, YOUNG, "yields");
   refuse(STATIC, NU, "    loads: [{group: z_max, torque: [0, 0, 1]}]\n", NULL, YOUNG, "turns with the body");
   refuse(STATIC, NU, "    loads: [{group: z_max, pressure: 10}]\n", NULL, YOUNG, "turns with the body");
