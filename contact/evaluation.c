@@ -142,12 +142,14 @@ static Status sift_by_boxes(ContactEvaluation *evaluation, const ContactLayout *
             : !(contact_bounds_distance(evaluation->boxes[cells[0]], evaluation->boxes[cells[1]]) > apart);
     kept += evaluation->is_kept[k];
   }
-  if (!memory_reserve((void **)&evaluation->pairs, &evaluation->pair_capacity, (size_t)kept,
+  if (!memory_reserve((void **)&evaluation->pairs, &evaluation->pair_capacity, (size_t)kept + 1,
                       sizeof(ContactPair)))
     return status_no_memory("candidate pairs");
   evaluation->pair_count = 0;
-  for (int k = 0; k < count; k++)
-    if (evaluation->is_kept[k]) evaluation->pairs[evaluation->pair_count++] = candidates->pairs[k];
+  for (int k = 0; k < count; k++) { // copies each, one too many at the end: a branch is mispredicted
+    evaluation->pairs[evaluation->pair_count] = candidates->pairs[k];
+    evaluation->pair_count += evaluation->is_kept[k];
+  }
   return STATUS_OK;
 }
 
@@ -195,9 +197,10 @@ static Status sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *
   if (!keeps_all) find_faces_apart(evaluation, layout, mesh_count, positions);
   evaluation->mesh_pair_count = 0;
   for (int k = 0; k < count; k++) {
-    if (!keeps_all && k < mesh_count && !evaluation->is_kept[k]) continue;
-    evaluation->mesh_pair_count += k < mesh_count;
-    evaluation->pairs[kept++] = evaluation->pairs[k];
+    bool is_kept = keeps_all || k >= mesh_count || evaluation->is_kept[k];
+    evaluation->pairs[kept] = evaluation->pairs[k];
+    evaluation->mesh_pair_count += is_kept && k < mesh_count;
+    kept += is_kept;
   }
   evaluation->pair_count = kept;
   TRY(reserve(evaluation, layout, kept));

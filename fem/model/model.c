@@ -81,11 +81,12 @@ FemElement fem_model_element(const FemModel *model, int tet) {
 double fem_model_det(const FemModel *model, int tet, const double *positions) {
   const FemModelBody *body = body_of(model, tet);
   int part = (tet - body->tet_begin) % FEM_QUADRATIC_PARTS;
-  double x[30], F[9];
-  gather(model->tets[tet], 4, positions, x);
-  const FemElement element = fem_model_element(model, tet);
-  fem_element_deformation(&element, x, F);
-  double own = fem_cofactor_det(F);
+  double x[30];
+  const int *nodes = model->tets[tet];
+  double own =
+      vec3_det4(vec3_at(positions + 3 * (size_t)nodes[0]), vec3_at(positions + 3 * (size_t)nodes[1]),
+                vec3_at(positions + 3 * (size_t)nodes[2]), vec3_at(positions + 3 * (size_t)nodes[3])) /
+      (6 * model->volumes[tet]);
   if (body->element != FEM_ELEMENT_QUADRATIC || part >= FEM_QUADRATIC_POINTS) return own;
   int quadratic = quadratic_of(model, tet);
   gather(model->quadratic_nodes[quadratic], FEM_QUADRATIC_NODES, positions, x);

@@ -170,18 +170,26 @@ Status fem_recorder_clear(const FemRecorder *recorder) {
   return STATUS_OK;
 }
 
+enum { FEW_ELEMENTS = 4000 }; // for one thread
+
 // `covered` (contact_evaluate) NULL: nothing is.
 static void measure_elements(FemRecorder *recorder, const double *positions, const double *covered,
                              FemMeasures *measures) {
-  const FemSystem *system = recorder->system;
-  measures->min_det_F = INFINITY;
-  for (int e = 0; e < system->model->tet_count; e++) {
-    recorder->det_F[e] = fem_model_det(system->model, e, positions);
-    recorder->overlap[e] = covered ? covered[e] / system->model->volumes[e] : 0;
-    if (system->model->bodies[system->model->tet_body[e]].is_obstacle) continue;
-    measures->min_det_F = fmin(measures->min_det_F, recorder->det_F[e]);
-    measures->deepest_overlap = fmax(measures->deepest_overlap, recorder->overlap[e]);
+  const FemModel *model = recorder->system->model;
+  double least = INFINITY, deepest = 0;
+#pragma omp parallel for schedule(static) reduction(min                                                      \
+                                                    : least)                                                 \
+    reduction(max                                                                                            \
+              : deepest) if (model->tet_count > FEW_ELEMENTS)
+  for (int e = 0; e < model->tet_count; e++) {
+    recorder->det_F[e] = fem_model_det(model, e, positions);
+    recorder->overlap[e] = covered ? covered[e] / model->volumes[e] : 0;
+    if (model->bodies[model->tet_body[e]].is_obstacle) continue;
+    least = fmin(least, recorder->det_F[e]);
+    deepest = fmax(deepest, recorder->overlap[e]);
   }
+  measures->min_det_F = least;
+  measures->deepest_overlap = deepest;
 }
 
 static void measure_motion(const FemModel *model, const FemState *state, FemMeasures *measures) {
