@@ -2,6 +2,7 @@
 """What a notebook shows, and meshes and tables for other packages. Debian 12 has neither pyvista nor what the tests may rely on of meshio and
 xarray: stand-ins keep what they are given, in the form that those packages document."""
 
+import inspect
 import os
 import sys
 import types
@@ -97,6 +98,26 @@ class Views(unittest.TestCase):
         shown = ElementTree.fromstring(tetlap.Comparison(x=tetlap.Compared("a<b", row, None))._repr_html_())
         self.assertIn("a<b", "".join(shown.itertext()))
         self.assertIn("0.25", "".join(shown.itertext()))
+
+class Help(unittest.TestCase):
+    def test_every_public_name_is_described_and_in_the_list_of_the_package(self):
+        for name in tetlap.__all__:
+            thing = getattr(tetlap, name)
+            self.assertTrue(inspect.getdoc(thing), name)
+            for key, member in vars(thing).items() if inspect.isclass(thing) else ():
+                function = member.fget if isinstance(member, property) else member
+                if not key.startswith("_") and inspect.isfunction(function):
+                    self.assertTrue(function.__doc__, f"{name}.{key}")
+            if inspect.isfunction(thing):
+                self.assertIn(name, tetlap.__doc__.replace(",", " ").split())
+
+    def test_every_function_has_types(self):
+        whatever = {"evaluate": {"model", "mix"}}  # of many kinds, which its text lists
+        for name in tetlap.__all__:
+            thing = getattr(tetlap, name)
+            if inspect.isfunction(thing):
+                bare = {key for key, it in inspect.signature(thing).parameters.items() if it.annotation is it.empty}
+                self.assertLessEqual(bare, whatever.get(name, set()), name)
 
 
 if __name__ == "__main__":

@@ -1,18 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
 """tetlap: overlap volumes of tetrahedra with their derivatives, and runs of the finite element program of that name.
 
+Volumes are computed in this process, by the shared library:
+
     overlap                     volumes of pairs, gradients, Hessians
     mesh_overlap, mesh_pairs    of all tetrahedra of two meshes
-    tetlap.torch.overlap        the same as a differentiable function of PyTorch tensors
     Model, models               the overlap models there are
-    run, read                   a scene run by the program; what it wrote, as arrays
-    load_pairs, evaluate        labelled pairs as arrays; how well a model, yours too, answers them
-    compare                     one scene with several models, yours too
+    tetlap.torch.overlap        the same as a differentiable function of PyTorch tensors
+
+        x = np.random.rand(1000, 2, 4, 3)               # pairs x 2 tetrahedra x 4 vertices x 3 coordinates
+        tetlap.overlap(x).volume                        # (1000)
+
+Runs are processes of their own, by the program. A scene is a file or a dict with the same keys (docs/scene.md):
+
+    run, read                   a scene run to its end; what it wrote, as a Run with Frames
     Simulation                  a run that Python steps, reads, pushes on, branches
-    map, Results                many of them side by side; what they gave, as arrays
+    map, Results                many of these side by side; what they gave, as arrays
+    compare                     one scene with several overlap models, yours too
     gradient                    exact derivatives of a static scene by its parameters
     tetlap.torch.run            the same scene as a differentiable function of PyTorch tensors
     poses                       overlap volume and wrench of many rigid poses of a body
+
+        run = tetlap.run("examples/01_drop.yaml")
+        run.history["total_J"], run.frames[-1].points   # (frames), (n, 3)
+
+        with tetlap.Simulation("examples/01_drop.yaml") as sim:
+            sim.advance(0.1)                            # [s]
+            sim.contacts["block", "ground"].force       # (3) [N]
+
+Models of overlap are measured on labelled pairs:
+
+    load_pairs, evaluate        labelled pairs as arrays; how well a model, yours too, answers them
+
+Units are SI. Arrays are float64 of NumPy; shapes stand in parentheses, units in brackets. Wrong arguments raise TypeError or ValueError;
+UnknownNameError (a KeyError) is a name that is not there, RunError a run that failed, with the program's own message and exit code, Error
+all else that is tetlap's. Messages of the program go to the logger "tetlap": logging.basicConfig(level="INFO") shows them.
 """
 
 from ._compare import Compared, Comparison, compare
@@ -28,10 +50,9 @@ from ._simulation import Body, Contact, Drive, Loads, Simulation, State
 from ._table import Failure, Results
 from ._volumes import Flag, MeshPairs, Overlap, mesh_overlap, mesh_pairs, overlap
 
-__all__ = ["Body", "Compared", "Comparison", "Contact", "Drive", "Error", "Failure", "Flag", "Frame", "Frames", "Loads", "MeshPairs", "Model", "Overlap",
-           "Poses", "Results", "Run", "RunError", "Simulation", "State", "UnknownNameError", "compare", "evaluate", "gradient", "load_pairs",
-           "map", "mesh_overlap", "mesh_pairs", "models", "overlap", "poses",
-           "read", "run"]
+__all__ = ["Body", "Compared", "Comparison", "Contact", "Drive", "Error", "Failure", "Flag", "Frame", "Frames", "Loads", "MeshPairs",
+           "Model", "Overlap", "Poses", "Results", "Run", "RunError", "Simulation", "State", "UnknownNameError", "compare",
+           "evaluate", "gradient", "load_pairs", "map", "mesh_overlap", "mesh_pairs", "models", "overlap", "poses", "read", "run"]
 
 
 def __getattr__(name):

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """One scene with several overlap models, by `tetlap compare`."""
 
+from __future__ import annotations
+
 import json
+import os
 import subprocess
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,7 +13,7 @@ from . import _locate, _views
 from ._errors import RunError
 from ._results import Run
 from ._run import _SERVER_S, _Folder, _place_scene, _Server, _Words
-from ._scene import override_texts
+from ._scene import OverlapModel, Scene, Settings, override_texts
 
 
 class Compared:
@@ -78,7 +81,8 @@ def _execute(command, servers):
     return json.loads(out)
 
 
-def compare(scene, models, directory=None, *, set=None, reference=None, audit=None, threads=None):
+def compare(scene: Scene, models: Mapping[str, OverlapModel], directory: str | os.PathLike | None = None, *, set: Settings = None,  # noqa: A002
+            reference: str | None = None, audit: int | None = None, threads: int | None = None) -> Comparison:
     """Runs a scene with several overlap models; a `Comparison`: a dict of `Compared` by the models' names.
 
     scene: a scene file's path, or a dict with the same keys (docs/scene.md).

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Derivatives of a static scene's quantities by its parameters, by `tetlap gradient`."""
 
+from __future__ import annotations
+
 import json
 import subprocess
 
@@ -9,7 +11,7 @@ import numpy as np
 from . import _locate
 from ._errors import RunError
 from ._run import _place_scene, _Words
-from ._scene import override_texts
+from ._scene import Scene, Settings, override_texts
 
 
 def _names(value, what, example):
@@ -62,8 +64,9 @@ def _arrays(found, of, by):
     }
 
 
-def gradient(scene, of, by, *, set=None, total=False):
-    """Runs a static scene without friction, or a motion without friction and damping, to its end; what quantities are there, and their exact derivatives, as a dict of arrays.
+def gradient(scene: Scene, of: str | list[str], by: str | list[str], *, set: Settings = None, total: bool = False) -> dict:  # noqa: A002
+    """Runs a static scene without friction, or a motion without friction and damping, to its end; what quantities are there, and their
+    exact derivatives, as a dict of arrays.
 
     scene: a scene file's path, or a dict with the same keys (docs/scene.md). Nothing is written.
     of: a quantity, "force:ball:ground:z", or a list of them (docs/gradients.md).

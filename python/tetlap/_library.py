@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The C API, include/tetlap/overlap.h, by ctypes. Nothing is loaded before it is needed."""
 
+from __future__ import annotations
+
 import ctypes
 import functools
 import os
@@ -150,7 +152,7 @@ class Model:
             _function("list_free")(found)
 
 
-def models():
+def models() -> list:
     """The library's models, the fastest first."""
     names, name = [], _function("model")(0)
     while name:

@@ -23,7 +23,7 @@ from pathlib import Path
 from . import _locate
 from ._errors import RunError
 from ._run import _INTERRUPTED, _Folder
-from ._scene import override_texts, scene_text, with_absolute_paths
+from ._scene import OverlapModel, Scene, Settings, override_texts, scene_text, with_absolute_paths
 from ._simulation import Simulation
 from ._table import Failure, Results, Table, as_row
 
@@ -271,9 +271,9 @@ def map(  # noqa: A001: as the language's own, but over processes
     f: Callable[[Simulation, object], Mapping],
     directory: str | os.PathLike | None = None,
     *,
-    scene=None,
-    set=None,  # noqa: A002: as tetlap.run has it
-    overlap=None,
+    scene: Scene | Callable[[object], Scene] | None = None,
+    set: Settings = None,  # noqa: A002: as tetlap.run has it
+    overlap: OverlapModel | None = None,
     processes: int | None = None,
     threads: int | None = None,
     again: bool = False,

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Labelled pairs of tetrahedra as arrays, and models measured on them."""
 
+from __future__ import annotations
+
 import json
 import os
 import subprocess
@@ -36,7 +38,7 @@ def _call(words, server=None):
     return out
 
 
-def load_pairs(file, *, first=0, count=None):
+def load_pairs(file: str | os.PathLike, *, first: int = 0, count: int | None = None) -> np.ndarray:
     """The pairs of a data set (docs/data.md) as an array of records (n).
 
     Fields: `coordinates` (2, 4, 3) float64 [edges of the unit cube]; `status`, 1 where the closed tetrahedra have a point in common, and
@@ -69,7 +71,8 @@ def _write_pairs(folder, data):
     return target
 
 
-def evaluate(model, data=None, *, law=None, mix=None, count=None, seed=None, paths=None, threads=None):
+def evaluate(model, data: str | os.PathLike | np.ndarray | None = None, *, law: str | None = None, mix=None, count: int | None = None,
+             seed: int | None = None, paths: int | None = None, threads: int | None = None) -> dict:
     """Measures an overlap model on labelled pairs; a dict with the keys of `tetlap eval --json` (docs/training.md).
 
     model: a name, a file, or a function or torch.nn.Module that takes pairs (n, 2, 4, 3) and returns what docs/own_model.md says.

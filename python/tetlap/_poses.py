@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Many rigid poses of a body, by the program as a child process."""
 
+from __future__ import annotations
+
 import subprocess
 import tempfile
 from collections.abc import Mapping
@@ -11,7 +13,7 @@ import numpy as np
 
 from . import _locate
 from ._errors import RunError
-from ._scene import override_texts, scene_text, with_absolute_paths
+from ._scene import Scene, Settings, override_texts, scene_text, with_absolute_paths
 
 
 class Poses(NamedTuple):
@@ -45,8 +47,9 @@ def _execute(words):
     raise RunError(f"tetlap poses failed: {message}", process.returncode, None)
 
 
-def poses(scene, poses=None, *, random=None, body=None, shift=None, turn=None, seed=None, set=None, device=None,
-          threads=None):
+def poses(scene: Scene, poses: np.ndarray | None = None, *, random: int | None = None, body: str | None = None, shift: float | None = None,
+          turn: float | None = None, seed: int | None = None, set: Settings = None,  # noqa: A002: as tetlap.run has it
+          device: str | None = None, threads: int | None = None) -> Poses:
     """Overlap volume and wrench of many rigid poses x' = R x + t of one of a scene's bodies against all others.
 
     scene: a scene file's path, or a dict with the same keys.

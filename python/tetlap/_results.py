@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a run wrote (docs/output.md), as arrays."""
 
+from __future__ import annotations
+
 import json
 import os
 import subprocess
@@ -40,7 +42,7 @@ class Frame:
         raise UnknownNameError(f"{self.path.name} has no array '{name}'; it has {', '.join(self.names)}")
 
     @property
-    def names(self):
+    def names(self) -> list[str]:
         """Of the arrays of points and of cells."""
         return [*self.point_data, *self.cell_data]
 
@@ -75,11 +77,11 @@ class Frames(Sequence):
         return Frame(paths[0], time, paths[1:])
 
     @property
-    def times(self):
+    def times(self) -> np.ndarray:
         """[s], (frames)"""
         return np.array([time for time, _ in self._entries])
 
-    def array(self, name):
+    def array(self, name: str) -> np.ndarray:
         """One array of all frames: "points" or a name of Frame, (frames, …)."""
         return np.stack([frame.points if name == "points" else frame[name] for frame in self])
 
@@ -147,7 +149,7 @@ class Run:
             raise Error(f"{directory}: expected frames.pvd, history.csv or summary.json, as `tetlap run` writes them")
 
     @property
-    def outcome(self):
+    def outcome(self) -> str | None:
         """"finished", "interrupted", "failed", or None while the run goes on."""
         return self.summary["outcome"] if self.summary else None
 
@@ -183,6 +185,6 @@ class Run:
         return f"<Run {os.fspath(self.directory)}: {self.outcome}, {len(self.frames)} frames>"
 
 
-def read(directory):
+def read(directory: str | os.PathLike) -> Run:
     """What a run wrote into `directory`, also of a run that goes on, was stopped or failed."""
     return Run(directory)

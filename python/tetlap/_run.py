@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs of the program as a child process."""
 
+from __future__ import annotations
+
 import logging
 import os
 import shutil
@@ -11,13 +13,13 @@ import tempfile
 import threading
 import warnings
 import weakref
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from . import _locate, serve
 from ._errors import RunError
-from ._results import Frames, Run
-from ._scene import override_texts, scene_text, with_absolute_paths
+from ._results import Frame, Frames, Run
+from ._scene import OverlapModel, Scene, Settings, override_texts, scene_text, with_absolute_paths
 
 _log = logging.getLogger("tetlap")
 _POLL_S = 0.02
@@ -203,7 +205,9 @@ def _place_scene(scene, directory):
     return file, directory, keeper
 
 
-def run(scene, directory=None, *, set=None, overlap=None, threads=None, strict=False, capture=None, on_frame=None):
+def run(scene: Scene, directory: str | os.PathLike | None = None, *, set: Settings = None,  # noqa: A002: as the program's option
+        overlap: OverlapModel | None = None, threads: int | None = None, strict: bool = False, capture: str | os.PathLike | None = None,
+        on_frame: Callable[[Frame], object] | None = None) -> Run:
     """Runs a scene with the program `tetlap`, in a process of its own; a `tetlap.Run` with what it wrote.
 
     scene: a scene file's path; or a dict with the same keys (docs/scene.md), whose paths count from the current

@@ -4,10 +4,18 @@
 import json
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from typing import Union
 
 import numpy as np
+
+#: A scene file's path, or a dict with the same keys, docs/scene.md.
+Scene = Union[str, "os.PathLike[str]", Mapping]
+#: What to change in a scene: {"contact.stiffness": 1e6} or ["contact.stiffness=1e6"].
+Settings = Union[Mapping, Iterable[str], None]
+#: An overlap model: a name, a weights file, or a function of pairs (n, 2, 4, 3), docs/own_model.md.
+OverlapModel = Union[str, "os.PathLike[str]", Callable]
 
 
 def _number_text(value, where):

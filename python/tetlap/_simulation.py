@@ -14,7 +14,7 @@ from . import _channel, _views
 from ._channel import Channel
 from ._errors import Error, UnknownNameError
 from ._run import _Folder, _Server
-from ._scene import override_texts, scene_text, with_absolute_paths
+from ._scene import OverlapModel, Scene, Settings, override_texts, scene_text, with_absolute_paths
 
 _FORCES, _STRESS = 1, 2
 _NEXT_ADVANCE = -1.0
@@ -288,7 +288,7 @@ class Simulation:
     state can be restored. Error: it is closed, or used by two threads at once.
     """
 
-    def __init__(self, scene, *, set=None, overlap=None, threads: int | None = None):  # noqa: A002: as tetlap.run has it
+    def __init__(self, scene: Scene, *, set: Settings = None, overlap: OverlapModel | None = None, threads: int | None = None):  # noqa: A002: as tetlap.run has it
         self._folder, self._arguments = None, {"set": set, "overlap": overlap, "threads": threads}
         if isinstance(scene, Mapping):
             self._folder = _Folder()
@@ -332,6 +332,7 @@ class Simulation:
 
     @property
     def time(self) -> float:
+        """Of the state that is shown [s]."""
         return self._channel.time
 
     def _change(self, what, payload=b"", a=0, b=0, on_step=None):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Overlap volumes of arrays of pairs, and of two meshes."""
 
+from __future__ import annotations
+
 import enum
 import functools
 import os
@@ -112,7 +114,8 @@ def _check_out(out, outputs, *inputs):
             raise ValueError(f"out.{name} lies where x or vector does; expected other memory")
 
 
-def overlap(x, model="clip", order=1, *, vector=None, centroid=False, threads=0, out=None):
+def overlap(x: np.ndarray, model: str | os.PathLike | _library.Model = "clip", order: int = 1, *, vector: np.ndarray | None = None,
+            centroid: bool = False, threads: int = 0, out: Overlap | None = None) -> Overlap:
     """Overlap volumes of pairs of tetrahedra and their derivatives, an `Overlap`.
 
     x: vertices (…, 2, 4, 3); float64 without a copy where it is contiguous, other real numbers are converted
@@ -182,7 +185,8 @@ def _mesh(points, tets, name):
     return points, np.ascontiguousarray(tets, np.int32)
 
 
-def mesh_pairs(points_a, tets_a, points_b, tets_b, model="clip", order=0, *, centroid=False, threads=0):
+def mesh_pairs(points_a: np.ndarray, tets_a: np.ndarray, points_b: np.ndarray, tets_b: np.ndarray, model: str | os.PathLike | _library.Model = "clip",
+               order: int = 0, *, centroid: bool = False, threads: int = 0) -> MeshPairs:
     """Which tetrahedra of two meshes overlap and by how much, a `MeshPairs`; order=1: with the gradients.
 
     points: (points, 3); tets: (tetrahedra, 4), vertices from 0
@@ -196,7 +200,8 @@ def mesh_pairs(points_a, tets_a, points_b, tets_b, model="clip", order=0, *, cen
     return MeshPairs(*found, (len(a[1]), len(b[1])))
 
 
-def mesh_overlap(points_a, tets_a, points_b, tets_b, model="clip", *, threads=0):
+def mesh_overlap(points_a: np.ndarray, tets_a: np.ndarray, points_b: np.ndarray, tets_b: np.ndarray, model: str | os.PathLike | _library.Model = "clip",
+                 *, threads: int = 0):
     """The overlap volumes of two meshes, a sparse matrix (tetrahedra of a, of b): scipy.sparse.csr_matrix where SciPy is
     installed, else what `mesh_pairs` gives."""
     pairs = mesh_pairs(points_a, tets_a, points_b, tets_b, model, threads=threads)
