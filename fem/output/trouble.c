@@ -28,6 +28,10 @@ static const struct {
      "try a larger contact.stiffness, a shorter time.max_step, or a thicker or finer body"},
 };
 
+// What a refusal asks for, of the stiffness: the energy of a blow is then stored within a third of the depth
+// by faces that meet, whose pressure grows with the depth, within a half by edges.
+static const double STIFFER = 10;
+
 static Status list_surface(FemTroubleWatch *watch) {
   const FemModel *model = watch->model;
   FemMeshFace *faces;
@@ -228,6 +232,45 @@ void fem_trouble_describe(const FemTrouble *trouble, const FemModel *model, FemT
   char place[256];
   fem_trouble_place(trouble, model, kind, place, sizeof place);
   snprintf(text, size, "%s: %s (%s)", kinds[kind].what, place, kinds[kind].advice);
+}
+
+// A hint for what is seen in the refused state: elements inside out are not held by any contact.
+static void describe_remedy(const FemTrouble *trouble, const FemModel *model, const FemTroubleState *found,
+                            double stiffness, char *text, size_t size) {
+  int inverted = found->count[FEM_TROUBLE_INVERTED] > 0 ? found->first[FEM_TROUBLE_INVERTED] : -1;
+  int body = inverted < 0 ? -1 : model->tet_body[inverted];
+  if (body >= 0 && (body == trouble->passed[0] || body == trouble->passed[1])) {
+    snprintf(
+        text, size,
+        "%d elements are inverted, element %d of body '%s' first, and contact holds no inverted element: "
+        "refine that body's mesh, or write law: neo_hookean_log",
+        found->count[FEM_TROUBLE_INVERTED], inverted, body_of_element(model, inverted));
+    return;
+  }
+  if (!(stiffness > 0)) {
+    snprintf(text, size, "write a steeper contact.law, or refine both meshes there");
+    return;
+  }
+  snprintf(text, size,
+           "its contact has a stiffness of %.3g: write contact: {pairs: [{bodies: [%s, %s], stiffness: "
+           "%.3g}]}, or "
+           "refine both meshes there",
+           stiffness, fem_compliance_party_name(model, trouble->passed[0]),
+           fem_compliance_party_name(model, trouble->passed[1]), STIFFER * stiffness);
+}
+
+void fem_trouble_describe_refusal(const FemTrouble *trouble, const FemModel *model,
+                                  const FemTroubleState *found, double stiffness, char *text, size_t size) {
+  char remedy[512];
+  int first = trouble->of[FEM_TROUBLE_PASSED].first;
+  describe_remedy(trouble, model, found, stiffness, remedy, sizeof remedy);
+  snprintf(
+      text, size,
+      "at t = %.9g s: '%s' and '%s' would pass through each other (element %d of body '%s' first, %d in this "
+      "step). The run ends before that; %s",
+      trouble->of[FEM_TROUBLE_PASSED].first_time, fem_compliance_party_name(model, trouble->passed[0]),
+      fem_compliance_party_name(model, trouble->passed[1]), first, body_of_element(model, first),
+      found->count[FEM_TROUBLE_PASSED], remedy);
 }
 
 void fem_trouble_record(const FemTrouble *trouble, Record *record) {

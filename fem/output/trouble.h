@@ -92,6 +92,10 @@ void fem_trouble_place(const FemTrouble *trouble, const FemModel *model, FemTrou
 // All three on one line: "what: place (advice)".
 void fem_trouble_describe(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
                           size_t size);
+// Why a step in which bodies pass is not accepted, and what to write instead, on one line. `found`: in the
+// state that is refused; `stiffness`: the pair's [Pa/m], 0: it has a law.
+void fem_trouble_describe_refusal(const FemTrouble *trouble, const FemModel *model,
+                                  const FemTroubleState *found, double stiffness, char *text, size_t size);
 void fem_trouble_record(const FemTrouble *trouble, Record *record);
 
 #endif

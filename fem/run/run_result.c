@@ -121,8 +121,8 @@ static void append_trouble(char *text, size_t size, size_t *used, const char *wh
 
 const char *fem_run_outcome(const FemRunResult *result, Status status) {
   if (status == STATUS_INTERRUPTED) return "interrupted";
-  if (status) return "failed";
   if (result->trouble.of[FEM_TROUBLE_PASSED].steps > 0) return "passed through";
+  if (status) return "failed";
   return result->inside.count > 0 ? "inside each other" : "finished";
 }
 

@@ -142,8 +142,8 @@ void fem_run_result_add_integrator(FemIntegratorStats *total, const FemIntegrato
 void fem_run_result_add_solver(FemSolverStats *total, const FemSolverStats *part);
 void fem_run_result_destroy(FemRunResult *result);
 
-// "finished", "interrupted" or "failed"; "passed through": it reached its end, but bodies passed through each
-// other; "inside each other": they lie so at the end.
+// "finished", "interrupted" or "failed"; "passed through": bodies did, or would have in the step with which
+// it ended; "inside each other": they lie so at the end.
 const char *fem_run_outcome(const FemRunResult *result, Status status);
 
 // The bodies that lie inside of each other, on one line.

@@ -175,6 +175,7 @@ static Status advance(FemRunState *run) {
   TRY(propose(run, &proposal));
   FemVerdict verdict = judge(run, &proposal);
   if (verdict.stands) {
+    TRY(fem_run_watch_refuse(run, proposal.time, &proposal.measures.trouble));
     TRY(show(run, &proposal));
     if (!proposal.is_evaluated) verdict = judge(run, &proposal);
   }

@@ -9,6 +9,22 @@ static Status refuse_passage(const FemRunState *run) {
   return status_fail(STATUS_SOLVER, "%s (--strict)", text);
 }
 
+Status fem_run_watch_refuse(FemRunState *run, double time, const FemTroubleState *found) {
+  if (found->count[FEM_TROUBLE_PASSED] == 0) return STATUS_OK;
+  FemTrouble *trouble = &run->result->trouble;
+  FemTroubleState passage = *found;
+  for (int kind = 0; kind < FEM_TROUBLE_KIND_COUNT; kind++) // the rest was in a state that is not accepted
+    if (kind != FEM_TROUBLE_PASSED) passage.count[kind] = 0;
+  fem_trouble_add(trouble, time, &passage);
+  const FemLedger *ledger = &run->recorder.ledger;
+  const ContactInterfaceDef *interface =
+      &contact_system_layout(ledger->contact)->interfaces[ledger->passage.first.interface];
+  char text[1024];
+  fem_trouble_describe_refusal(trouble, run->model, found, interface->law ? 0 : interface->stiffness, text,
+                               sizeof text);
+  return status_fail(STATUS_SOLVER, "%s", text);
+}
+
 // Counts the trouble of the accepted state; `*has_begun`: some of it was not there in the state before.
 static Status watch_trouble(FemRunState *run, FemMeasures *measures, bool *has_begun) {
   FemTrouble *trouble = &run->result->trouble;

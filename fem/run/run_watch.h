@@ -9,6 +9,10 @@
 // STATUS_INTERRUPTED; the Status of the observer.
 Status fem_run_watch(FemRunState *run, FemMeasures *measures);
 
+// Before the state of a time step is accepted, by the trouble that was found in it. STATUS_SOLVER: an element
+// would leave another body on the opposite side; the message says which, when, and what to write instead.
+Status fem_run_watch_refuse(FemRunState *run, double time, const FemTroubleState *found);
+
 // STATUS_INTERRUPTED once the caller has asked the run to stop; the message says when.
 Status fem_run_watch_stop(const FemRunState *run);
 

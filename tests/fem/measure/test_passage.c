@@ -6,15 +6,24 @@
 
 #include "fem/output/trouble.h"
 
+// Runs, whatever becomes of it.
+static void run_to_its_end(SceneRun *run, const char *const *overrides) {
+  scene_open(run, "pierce", overrides);
+  scene_run_from(run, NULL);
+}
+
 static void expect_passage(const char *const *overrides, bool has_passed) {
   SceneRun run;
   char text[1024];
-  scene_run(&run, "pierce", overrides);
+  run_to_its_end(&run, overrides);
   const FemTrouble *trouble = &run.result.trouble;
   int last = run.result.trajectory.frame_count - 1, stone = run.model.bodies[1].vertex_begin;
+  double height = scene_position(&run, last, stone)[2] - scene_position(&run, last, 0)[2];
   ck_assert_double_gt(run.result.contact.force_max, 0);
-  // What truly happened: the stone is on this side of the plate, or on the other.
-  ck_assert(has_passed == (scene_position(&run, last, stone)[2] < scene_position(&run, last, 0)[2] - 0.02));
+  // What truly happened: the stone is on this side of the plate, which bends, or its lower side is beyond the
+  // plate's.
+  ck_assert(has_passed ? height < 0 : height >= -0.02);
+  ck_assert_int_eq(run.status, has_passed ? STATUS_SOLVER : STATUS_OK);
   ck_assert(has_passed == (trouble->of[FEM_TROUBLE_PASSED].steps > 0));
   ck_assert_str_eq(fem_run_outcome(&run.result, run.status), has_passed ? "passed through" : "finished");
   fem_run_describe_trouble(&run.result, &run.model, text, sizeof text);
@@ -48,7 +57,7 @@ START_TEST(through_an_obstacle_without_a_mesh) {
   const char *const overrides[] = {
       "contact.stiffness=1e7", "bodies.plate.place={translate: [0, 0, -1]}", "bodies.plate.fixed=[]",
       "obstacles=[{name: wall, box: {centre: [0.1, 0.1, 0], size: [0.2, 0.2, 0.01]}}]", NULL};
-  scene_run(&run, "pierce", overrides);
+  run_to_its_end(&run, overrides);
   ck_assert_str_eq(fem_run_outcome(&run.result, run.status), "passed through");
   scene_close(&run);
 }
@@ -78,15 +87,42 @@ START_TEST(an_edge_does_not_pass_a_soft_plate) {
 }
 END_TEST
 
-START_TEST(strict_makes_it_an_error) {
+// No frame, row or checkpoint holds the state in which the stone has passed; what the message asks for holds
+// it.
+START_TEST(a_run_ends_before_the_step_that_passes_and_says_what_to_write) {
   SceneRun run;
-  scene_open(&run, "pierce", (const char *const[]){"contact.stiffness=1e7", NULL});
-  FemRunOptions options = {.is_strict = true};
-  run.status = fem_run(&run.model, &options, &run.result);
+  run_to_its_end(&run, (const char *const[]){"contact.stiffness=1e7", NULL});
   ck_assert_int_eq(run.status, STATUS_SOLVER);
-  ck_assert_ptr_nonnull(strstr(status_message(), "'plate' and 'stone'"));
-  ck_assert_ptr_nonnull(strstr(status_message(), "--strict"));
-  ck_assert_double_lt(run.result.end_time, run.scene.end);
+  const FemTrouble *trouble = &run.result.trouble;
+  ck_assert_double_lt(run.result.end_time, trouble->of[FEM_TROUBLE_PASSED].first_time);
+  ck_assert_double_lt(trouble->of[FEM_TROUBLE_PASSED].first_time, run.scene.end);
+  ck_assert_ptr_nonnull(
+      strstr(status_message(), "'plate' and 'stone' would pass through each other (element "));
+  const char *advice = strstr(status_message(), "contact: {");
+  ck_assert_ptr_nonnull(advice);
+  char pairs[128], *end;
+  snprintf(pairs, sizeof pairs, "contact.pairs=%s", advice + strlen("contact: {pairs: "));
+  ck_assert_ptr_nonnull(end = strstr(pairs, "}]"));
+  end[2] = 0;
+  scene_close(&run);
+  run_without_passage(&run, "pierce", (const char *const[]){"contact.stiffness=1e7", pairs, NULL});
+  scene_close(&run);
+}
+END_TEST
+
+// Where a body of the two is inverted no stiffness helps; a pair with a law has none.
+START_TEST(a_body_that_is_inverted_is_to_be_refined) {
+  FemTroubleState found = {.count = {[FEM_TROUBLE_INVERTED] = 3, [FEM_TROUBLE_PASSED] = 1}};
+  FemTrouble trouble = {.passed = {0, 1}};
+  SceneRun run;
+  char text[1024];
+  scene_open(&run, "pierce", NULL);
+  fem_trouble_describe_refusal(&trouble, &run.model, &found, 1e7, text, sizeof text);
+  ck_assert_ptr_nonnull(strstr(text, "3 elements are inverted, element 0 of body 'plate' first"));
+  ck_assert_ptr_null(strstr(text, "contact: {"));
+  trouble.passed[0] = 1, trouble.passed[1] = 1; // what is inverted elsewhere says nothing here
+  fem_trouble_describe_refusal(&trouble, &run.model, &found, 0, text, sizeof text);
+  ck_assert_ptr_nonnull(strstr(text, "a steeper contact.law"));
   scene_close(&run);
 }
 END_TEST
@@ -158,7 +194,8 @@ int main(void) {
   tcase_add_test(cases, one_that_bounces_after_a_deep_overlap_did_not);
   tcase_add_test(cases, through_an_obstacle_without_a_mesh);
   tcase_add_test(cases, an_edge_does_not_pass_a_soft_plate);
-  tcase_add_test(cases, strict_makes_it_an_error);
+  tcase_add_test(cases, a_run_ends_before_the_step_that_passes_and_says_what_to_write);
+  tcase_add_test(cases, a_body_that_is_inverted_is_to_be_refined);
   tcase_add_test(cases, what_slides_does_not_pass);
   tcase_add_test(cases, what_rolls_does_not_pass);
   tcase_add_test(cases, what_sleeps_and_is_awakened_does_not_pass);
