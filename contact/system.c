@@ -62,8 +62,6 @@ static Status reserve(ContactSystem *system, const ContactSystemDef *def) {
   if (!system->velocities || !system->given_forces || !system->given_covered || !system->given_volumes)
     return status_no_memory("a contact system");
   measure_given(def, system->given_volumes);
-  system->evaluation.given_forces = system->given_forces;
-  system->evaluation.given_covered = system->given_covered;
   return contact_star_sink_create(&system->star_sink, &system->stars);
 }
 
@@ -73,18 +71,28 @@ static bool is_smooth(const ContactSystemDef *def) {
   return false;
 }
 
+// What depends on where the bodies are.
+static Status create_lists(ContactSystem *system) {
+  TRY(contact_evaluation_create(&system->evaluation, &system->layout));
+  if (system->stars.is_needed) {
+    system->evaluation.given_forces = system->given_forces;
+    system->evaluation.given_covered = system->given_covered;
+  }
+  TRY(contact_candidates_create(&system->candidates, &system->layout));
+  TRY(contact_near_create(&system->near, &system->layout));
+  system->counters = (ContactCounters){.resting = system->layout.self.left_out.count};
+  return STATUS_OK;
+}
+
 // A step may be as long as without the points of smooth surfaces, so the margin is that of the bodies' own
 // edges.
 static Status create_parts(ContactSystem *system, const ContactSystemDef *def) {
   TRY(contact_stars_create(&system->stars, def));
   if (is_smooth(def) && !(def->margin > 0)) system->stars.def.margin = contact_layout_margin(def);
   TRY(contact_layout_create(&system->layout, &system->stars.def));
-  TRY(contact_evaluation_create(&system->evaluation, &system->layout));
   TRY(reserve(system, def));
-  TRY(contact_candidates_create(&system->candidates, &system->layout));
-  TRY(contact_near_create(&system->near, &system->layout));
-  system->counters.resting = system->layout.self.left_out.count;
-  return contact_stiffness_create(&system->stiffness, &system->layout);
+  TRY(contact_stiffness_create(&system->stiffness, &system->layout));
+  return create_lists(system);
 }
 
 Status contact_system_create(ContactSystem **system, const ContactSystemDef *def) {
@@ -118,6 +126,15 @@ void contact_system_destroy(ContactSystem *system) {
   memory_free(system->traces);
   memory_free(system->resting_traces);
   memory_free(system);
+}
+
+Status contact_system_start_over(ContactSystem *system) {
+  contact_candidates_destroy(&system->candidates);
+  contact_near_destroy(&system->near);
+  contact_rest_destroy(&system->rest);
+  system->has_rest = false;
+  contact_evaluation_destroy(&system->evaluation);
+  return create_lists(system);
 }
 
 // Where the contact mesh is; what the inner modules are given.

@@ -47,6 +47,9 @@ typedef struct ContactCounters {
 typedef struct ContactSystem ContactSystem; // opaque: lists, scratch memory and one evaluation
 
 Status contact_system_create(ContactSystem **system, const ContactSystemDef *def);
+// As it was when it was created: what former positions left, counts too, is gone. After a failure it can be
+// destroyed.
+Status contact_system_start_over(ContactSystem *system);
 void contact_system_destroy(ContactSystem *system);
 
 // After an accepted step (and once before the first evaluation): rebuilds the candidate lists where the

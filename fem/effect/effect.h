@@ -23,9 +23,10 @@ typedef struct FemEffectOps {
   bool is_divided;   // over ranks it gives what this rank's elements give: the sum over ranks is the effect's
   bool (*is_wanted)(const FemSceneDef *scene);
   Status (*create)(void **self, const FemModel *model);
-  // The same as create for a run that begins anew: takes over from `old`, which is destroyed next, what never
-  // changes and is expensive to make or was read from a file (weights). NULL: create.
-  Status (*create_again)(void **self, const FemModel *model, void *old);
+  // The same as create for a run that begins anew with the same model: takes over `*old`, which is NULL then,
+  // for what never changes and is expensive to make or was read from a file (weights). What depends on former
+  // states is made as create makes it. NULL: create.
+  Status (*create_again)(void **self, void **old);
   // Once all effects are there: to find one that this effect builds on, by fem_system_effect. NULL: none.
   Status (*connect)(void *self, const struct FemSystem *system);
   // Tells the matrix pattern which vertices this effect couples at that state; *has_grown (may be NULL) as in

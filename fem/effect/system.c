@@ -21,15 +21,15 @@ static Status name_effect(Status status, const FemEffectOps *ops) {
                                                        : status_prefix(status, "effect '%s'", ops->name);
 }
 
-// An effect of `old` (NULL: there is none) gives what it can to the new one of that place.
-static Status create_effect(FemEffect *effect, const FemModel *model, const FemSystem *old, int place) {
+// An effect of `old` (NULL: there is none) may become the new one of that place.
+static Status create_effect(FemEffect *effect, const FemModel *model, FemSystem *old, int place) {
   bool takes_over = old && effect->ops->create_again;
-  Status status = takes_over ? effect->ops->create_again(&effect->self, model, old->effects[place].self)
+  Status status = takes_over ? effect->ops->create_again(&effect->self, &old->effects[place].self)
                              : effect->ops->create(&effect->self, model);
   return name_effect(status, effect->ops);
 }
 
-static Status create_effects(FemSystem *system, const FemSystem *old) {
+static Status create_effects(FemSystem *system, FemSystem *old) {
   int count;
   const FemEffectOps *const *list = fem_effect_list(&count);
   for (int i = 0; i < count; i++) {
@@ -125,7 +125,7 @@ static Status create_accepted(FemSystem *system) {
   return STATUS_OK;
 }
 
-static Status create(FemSystem *system, const FemSystem *old) {
+static Status create(FemSystem *system, FemSystem *old) {
   size_t values = 3 * (size_t)system->model->vertex_count;
   TRY(fem_numbering_create(&system->numbering, system->model));
   if (system->numbering.count == 0)
@@ -144,7 +144,7 @@ static Status create(FemSystem *system, const FemSystem *old) {
   return lay_out(system);
 }
 
-static Status create_from(FemSystem *system, const FemModel *model, const FemSystem *old) {
+static Status create_from(FemSystem *system, const FemModel *model, FemSystem *old) {
   *system = (FemSystem){.model = model};
   Status status = create(system, old);
   if (status) fem_system_destroy(system);
@@ -155,18 +155,19 @@ Status fem_system_create(FemSystem *system, const FemModel *model) {
   return create_from(system, model, NULL);
 }
 
-Status fem_system_create_again(FemSystem *system, const FemModel *model) {
+Status fem_system_create_again(FemSystem *system) {
   FemSystem old = *system;
   fem_matrix_destroy(&old.matrix); // the largest part, which is not taken over
   fem_pattern_destroy(old.pattern);
   old.pattern = NULL;
-  Status status = create_from(system, model, &old);
+  Status status = create_from(system, old.model, &old);
   fem_system_destroy(&old);
   return status;
 }
 
 void fem_system_destroy(FemSystem *system) {
-  for (int i = 0; i < system->effect_count; i++) system->effects[i].ops->destroy(system->effects[i].self);
+  for (int i = 0; i < system->effect_count; i++)
+    if (system->effects[i].self) system->effects[i].ops->destroy(system->effects[i].self);
   fem_matrix_destroy(&system->matrix);
   fem_pattern_destroy(system->pattern);
   fem_numbering_destroy(&system->numbering);

@@ -36,7 +36,7 @@ typedef struct FemSystem {
 Status fem_system_create(FemSystem *system, const FemModel *model);
 // Creates it anew in place: everything that depends on earlier states is discarded. After a failure there is
 // nothing to destroy.
-Status fem_system_create_again(FemSystem *system, const FemModel *model);
+Status fem_system_create_again(FemSystem *system);
 void fem_system_destroy(FemSystem *system);
 
 // A state to try steps from the accepted one with, the caller's; it begins as a copy of that.

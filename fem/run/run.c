@@ -167,8 +167,7 @@ static Status begin_part(FemRunState *run) {
   run->next_step = from->step;
   run->least_power = INFINITY;
   TRY(fem_formulas_check(run->model, run->time));
-  TRY(is_first ? fem_system_create(&run->system, run->model)
-               : fem_system_create_again(&run->system, run->model));
+  TRY(is_first ? fem_system_create(&run->system, run->model) : fem_system_create_again(&run->system));
   run->system.stop = run->options->stop;
   TRY(create_states(run));
   TRY(release(run));
@@ -201,9 +200,7 @@ Status fem_run_loop_begin_anew(FemRunState *run) {
   TRY(fem_run_checkpoint_take(run, force_scale, driven_work));
   fem_rest_destroy(run->rest);
   run->rest = NULL;
-  TRY(begin_part(run));
-  memory_trim();
-  return STATUS_OK;
+  return begin_part(run);
 }
 
 static Status equilibrate(FemRunState *run) {
@@ -221,7 +218,10 @@ Status fem_run_loop_turn(FemRunState *run) {
     TRY(run->integrator ? fem_run_step_advance(run) : sleep_on(run));
   }
   const FemIntegratorStats stats = fem_run_state_stats(run);
-  return fem_run_checkpoint_is_due(run, &stats) ? fem_run_loop_begin_anew(run) : STATUS_OK;
+  if (!fem_run_checkpoint_is_due(run, &stats)) return STATUS_OK;
+  TRY(fem_run_loop_begin_anew(run));
+  memory_trim();
+  return STATUS_OK;
 }
 
 static Status keep_account(FemRunState *run) {

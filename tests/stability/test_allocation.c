@@ -262,7 +262,7 @@ static Status make_system(const char *unused) {
   FemSystem system = {0};
   Status status = fem_system_create(&system, &job.model);
   if (!status) {
-    status = fem_system_create_again(&system, &job.model);
+    status = fem_system_create_again(&system);
     if (!status) fem_system_destroy(&system);
   }
   return status;

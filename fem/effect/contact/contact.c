@@ -117,16 +117,11 @@ static Status check_model(const FemSceneDef *scene, const OverlapModel *model) {
       is_field ? "centroid or its gradient" : "gradient");
 }
 
-static Status build(Contact *contact, Contact *old) {
+static Status build(Contact *contact) {
   const FemModel *model = contact->model;
   const FemContactDef *def = &model->scene->contact;
-  if (old) {
-    contact->overlap = old->overlap;
-    old->overlap = (OverlapModel){0};
-  } else {
-    TRY(fem_effect_contact_create_overlap(model->scene, NULL, &contact->overlap));
-    TRY(check_model(model->scene, &contact->overlap));
-  }
+  TRY(fem_effect_contact_create_overlap(model->scene, NULL, &contact->overlap));
+  TRY(check_model(model->scene, &contact->overlap));
   contact->bodies = memory_zeroed((size_t)model->body_count, sizeof *contact->bodies);
   contact->shapes = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->shapes);
   contact->solids = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->solids);
@@ -164,13 +159,12 @@ static Status build(Contact *contact, Contact *old) {
   return status;
 }
 
-// The overlap model, whose weights may have been replaced on the disk, goes on from `old`; NULL: it is made.
-static Status create_again(void **self, const FemModel *model, void *old) {
+static Status create(void **self, const FemModel *model) {
   Contact *contact = memory_zeroed(1, sizeof *contact);
   if (!contact) return status_no_memory("contact");
   contact->model = model;
   contact->reach = COUPLING_REACH * model->edge;
-  Status status = build(contact, old);
+  Status status = build(contact);
   if (status)
     destroy(contact);
   else
@@ -178,8 +172,16 @@ static Status create_again(void **self, const FemModel *model, void *old) {
   return status;
 }
 
-static Status create(void **self, const FemModel *model) {
-  return create_again(self, model, NULL);
+// The overlap model, whose weights may have been replaced on the disk, stays; so do surfaces and laws.
+static Status create_again(void **self, void **old) {
+  Contact *contact = *old;
+  *old = NULL;
+  Status status = contact_system_start_over(contact->system);
+  if (status)
+    destroy(contact);
+  else
+    *self = contact;
+  return status;
 }
 
 static Status renew(void *self, const FemState *state, double step) {

@@ -24,6 +24,13 @@ static Status create(void **self, const FemModel *model) {
   return STATUS_OK;
 }
 
+// Nothing of it depends on former states.
+static Status create_again(void **self, void **old) {
+  *self = *old;
+  *old = NULL;
+  return STATUS_OK;
+}
+
 static Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
   (void)state;
   return fem_assembly_couple(self, pattern, has_grown);
@@ -95,6 +102,7 @@ const FemEffectOps fem_effect_elasticity = {
     .is_divided = true,
     .is_wanted = is_wanted,
     .create = create,
+    .create_again = create_again,
     .couple = couple,
     .add_force = add_force,
     .add_jacobian = add_jacobian,
