@@ -10,7 +10,10 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/vec3.h"
+#include "contact/search/layout.h"
 #include "fem/effect/contact/contact.h"
+#include "fem/effect/elements/packs.h"
+#include "fem/model/compliance.h"
 #include "folder.h"
 #include "scene.h"
 
@@ -30,6 +33,32 @@ Status __wrap_fem_forces_take(FemForces *forces, const FemState *state);
 Status __wrap_fem_forces_take(FemForces *forces, const FemState *state) {
   forces_of_contact++;
   return __real_fem_forces_take(forces, state);
+}
+
+// What a model is prepared with.
+static int preparations;
+Status __real_contact_layout_create(ContactLayout *layout, const ContactSystemDef *def);
+Status __wrap_contact_layout_create(ContactLayout *layout, const ContactSystemDef *def);
+Status __wrap_contact_layout_create(ContactLayout *layout, const ContactSystemDef *def) {
+  preparations++;
+  return __real_contact_layout_create(layout, def);
+}
+
+Status __real_fem_compliance_choose(const FemModel *model, FemCompliance *choice);
+Status __wrap_fem_compliance_choose(const FemModel *model, FemCompliance *choice);
+Status __wrap_fem_compliance_choose(const FemModel *model, FemCompliance *choice) {
+  preparations++;
+  return __real_fem_compliance_choose(model, choice);
+}
+
+Status __real_fem_packs_create(FemPacks *packs, const FemModel *model, bool is_quadratic,
+                               bool (*takes)(const FemModelBody *body));
+Status __wrap_fem_packs_create(FemPacks *packs, const FemModel *model, bool is_quadratic,
+                               bool (*takes)(const FemModelBody *body));
+Status __wrap_fem_packs_create(FemPacks *packs, const FemModel *model, bool is_quadratic,
+                               bool (*takes)(const FemModelBody *body)) {
+  preparations++;
+  return __real_fem_packs_create(packs, model, is_quadratic, takes);
 }
 
 static long long evaluations(void) {
@@ -301,6 +330,22 @@ START_TEST(a_static_scene_goes_from_equilibrium_to_equilibrium) {
 }
 END_TEST
 
+START_TEST(what_never_changes_is_made_once) {
+  AppLoopState state;
+  preparations = 0;
+  open_loop("hand", NULL);
+  ck_assert_int_gt(preparations, 2);
+  preparations = 0;
+  ck_assert_ok(app_loop_advance(&loop, 0.05));
+  ck_assert_ok(app_loop_state_keep(&loop, &state));
+  for (int k = 0; k < 3; k++) ck_assert_ok(app_loop_state_restore(&loop, &state));
+  ck_assert_int_eq(preparations, 0);
+  ck_assert_ok(app_loop_advance(&loop, 0.06));
+  app_loop_state_destroy(&state);
+  app_loop_close(&loop);
+}
+END_TEST
+
 START_TEST(an_advance_by_nothing_evaluates_nothing) {
   open_loop("hand", NULL);
   press(0.12);
@@ -367,6 +412,7 @@ int main(void) {
   tcase_add_test(test_case, what_makes_no_sense_is_refused_by_name);
   tcase_add_test(test_case, a_static_scene_goes_from_equilibrium_to_equilibrium);
   tcase_add_test(test_case, an_advance_ends_where_a_condition_holds);
+  tcase_add_test(test_case, what_never_changes_is_made_once);
   tcase_add_test(test_case, an_advance_by_nothing_evaluates_nothing);
   tcase_add_test(test_case, a_run_that_is_stepped_evaluates_no_energy_that_the_run_does_not);
   tcase_add_test(test_case, a_time_that_differs_by_rounding_is_reached);
