@@ -12,6 +12,7 @@ import tempfile
 import textwrap
 import time
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import numpy as np
@@ -243,12 +244,18 @@ class Refusals(InFolder):
         (self.folder / "precious").write_text("x")
         with self.assertRaisesRegex(tetlap.Error, "not empty"):
             tetlap.map(PARAMETERS, press, self.folder, scene=SCENE)
-        self.assertEqual({path.name for path in self.folder.iterdir()} - {"lock"}, {"precious"})
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["precious"])
         with self.assertRaisesRegex(FileNotFoundError, "map.json"):
             tetlap.Results(self.folder)
         (self.folder / "map.json").write_text(json.dumps({"format": "tetlap-map 9"}))
         with self.assertRaisesRegex(tetlap.Error, "tetlap-map 9"):
             tetlap.Results(self.folder)
+
+    def test_a_folder_is_its_own_even_if_a_kill_left_nothing_in_it(self):
+        with unittest.mock.patch("tetlap._table.Table._grow", side_effect=KeyboardInterrupt), self.assertRaises(KeyboardInterrupt):
+            tetlap.map([1], press, self.folder, scene=SCENE)
+        self.assertEqual(len(tetlap.Results(self.folder)), 0)
+        self.assertEqual(len(tetlap.map(PARAMETERS[:1], press, self.folder, scene=SCENE)), 1)
 
     def test_one_map_at_a_time_fills_a_folder(self):
         def meddle(_, p):

@@ -306,8 +306,8 @@ def map(  # noqa: A001: as the language's own, but over processes
     An item whose run fails, or whose `f` raises, is in `results.failures` with its message, and never among the rows; the others go on.
     Ctrl-C ends all runs; a row is there whole or not at all, and the same call goes on with the others.
 
-    ValueError: there are no items, or the folder's results are of another function (its text), scene, mesh or program, or of other items. RunError: a `scene`
-    that is for all cannot be opened. Error: another process fills the folder.
+    ValueError: there are no items, or the folder's results are of another function (its text), scene, mesh or program, or of other items.
+    RunError: a `scene` that is for all cannot be opened. Error: another process fills the folder.
     """
     items = list(items)
     if not items:

@@ -288,7 +288,8 @@ class Simulation:
     state can be restored. Error: it is closed, or used by two threads at once.
     """
 
-    def __init__(self, scene: Scene, *, set: Settings = None, overlap: OverlapModel | None = None, threads: int | None = None):  # noqa: A002: as tetlap.run has it
+    def __init__(self, scene: Scene, *, set: Settings = None,  # noqa: A002: as tetlap.run has it
+                 overlap: OverlapModel | None = None, threads: int | None = None):
         self._folder, self._arguments = None, {"set": set, "overlap": overlap, "threads": threads}
         if isinstance(scene, Mapping):
             self._folder = _Folder()
@@ -437,7 +438,8 @@ class Simulation:
         """In a notebook: what touches, and a picture of the bodies at the present time, coloured by speed."""
         if not self._channel.is_open:
             return _views.table_html(repr(self), [])
-        rows = [(f"{a}, {b}", contact.force.round(6).tolist(), _views.digits(contact.area)) for (a, b), contact in self.contacts.items() if contact.touches]
+        rows = [(f"{a}, {b}", contact.force.round(6).tolist(), _views.digits(contact.area))
+                for (a, b), contact in self.contacts.items() if contact.touches]
         title = f"t = {self.time:.6g} of {self.end:.6g} s; {len(self.bodies)} bodies"
         bodies = list(self.bodies.values())
         points = np.concatenate([body.points for body in bodies])

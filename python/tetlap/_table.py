@@ -105,6 +105,8 @@ class Table:
     def __init__(self, directory, keys, origin):
         self._directory = Path(directory)
         self._directory.mkdir(parents=True, exist_ok=True)
+        if not (self._directory / "map.json").exists() and any(path.name != "lock" for path in self._directory.iterdir()):
+            raise Error(f"{self._directory}: is not empty and has no map.json; name a folder of its own")
         self._lock = open(self._directory / "lock", "w")  # noqa: SIM115: held until close
         try:
             self._claim()
@@ -122,13 +124,12 @@ class Table:
     def _open(self, keys, origin):
         keys = np.array(keys, "S32")
         about = _read_about(self._directory)
-        if about is None:
-            if any(path.name != "lock" for path in self._directory.iterdir()):
-                raise Error(f"{self._directory}: is not empty and has no map.json; name a folder of its own")
+        if about is None or about["count"] == 0:
             about = {"format": _FORMAT, "count": 0, "origin": origin, "fields": {}}
         else:
             self._check(about, keys, origin)
         self.about = about
+        self._write_about()  # before all else: a folder with other files and without it is somebody else's
         self._grow(keys)
         self.status = np.lib.format.open_memmap(self._directory / "status.npy", "r+")
         self._fields = {name: np.lib.format.open_memmap(self._directory / f"{name}.npy", "r+") for name in about["fields"]}
@@ -231,7 +232,8 @@ class Results(Sequence):
         about = _read_about(self.directory)
         if about is None:
             raise FileNotFoundError(f"{directory}: has no map.json; expected a folder that tetlap.map wrote")
-        status = np.load(self.directory / "status.npy")[: about["count"]]
+        begun = (self.directory / "status.npy").exists()
+        status = np.load(self.directory / "status.npy")[: about["count"]] if begun else np.zeros(0, np.uint8)
         self.count: int = about["count"]
         self.index: np.ndarray = np.flatnonzero(status == _GOOD)
         self.fields: tuple[str, ...] = tuple(about["fields"])

@@ -53,8 +53,8 @@ def outline_svg(points, tets, colours, size=320):
     flat = points[:, [0, 2]]
     low, width = flat.min(axis=0), max(np.ptp(flat, axis=0).max(), 1e-300)
     x, y = ((flat - low) / width * size).T
-    triangles = "".join(f"<polygon points='{' '.join(f'{x[v]:.1f},{size - y[v]:.1f}' for v in face)}' fill='hsl({220 - 220 * colours[face].mean():.0f},60%,60%)' "
-                        "stroke='#0003'/>" for face in faces)
+    triangles = "".join(f"<polygon points='{' '.join(f'{x[v]:.1f},{size - y[v]:.1f}' for v in face)}' "
+                        f"fill='hsl({220 - 220 * colours[face].mean():.0f},60%,60%)' stroke='#0003'/>" for face in faces)
     return f"<svg width='{size}' height='{size}' viewBox='-2 -2 {size + 4} {size + 4}'>{triangles}</svg>"
 
 
