@@ -160,10 +160,12 @@ class Refusals(unittest.TestCase):
                                 (lambda: sim.loads.set("block", np.zeros((3, 2))), r"expected \(3,\) or \(6,\) or \(64, 3\)"),
                                 (lambda: sim.drive.set("plate", [0, 0, 0], ramp=0), "cannot jump"),
                                 (lambda: sim.advance(until=0.001), "cannot go back"), (lambda: sim.advance(-0.001), "cannot go back"),
-                                (lambda: sim.advance(10), "ends at t = 0.2 s"), (lambda: sim.advance(until=np.nan), "cannot go back")):
+                                (lambda: sim.advance(10), "ends at t = 0.2 s"), (lambda: sim.advance(until=np.nan), "not nan"),
+                                (lambda: sim.loads.set("block", [0, 0, 0], ramp=-1), "0 seconds or more, not -1")):
                 with self.assertRaisesRegex(ValueError, words):
                     call()
-            for call in (lambda: sim.advance(), lambda: sim.advance(0.1, until=1), lambda: sim.drive.set("plate", "up"), lambda: sim.restore(3)):
+            for call in (lambda: sim.advance(), lambda: sim.advance(0.1, until=1), lambda: sim.drive.set("plate", "up"), lambda: sim.restore(3),
+                         lambda: sim.advance("x"), lambda: sim.loads.set("block", [0, 0, 0], ramp="x")):
                 with self.assertRaises(TypeError):
                     call()
             sim.advance(0.01)
@@ -174,6 +176,8 @@ class Refusals(unittest.TestCase):
             tetlap.Simulation("no_such.yaml")
         with self.assertRaisesRegex(tetlap.RunError, "yuong"):
             tetlap.Simulation({"bodies": [{"name": "a", "mesh": "a.msh", "material": {"yuong": 1}}]})
+        with self.assertRaisesRegex(tetlap.RunError, "--threads is '-1'"):
+            tetlap.Simulation(SCENE, threads=-1)
 
     def test_closed_foreign_and_lost_ones_are_told(self):
         with opened() as sim, opened() as other:

@@ -79,7 +79,7 @@ class _Words(threading.Thread):
         for line in self._stream:
             line = line.rstrip()
             label, _, rest = line.partition(": ")
-            if label == "error":
+            if label == "error" or label.startswith("tetlap "):  # the latter: an option that makes no sense
                 self.errors.append(rest)
             elif label == "warning":
                 _log.warning("%s", rest)

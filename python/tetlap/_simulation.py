@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
@@ -23,6 +24,25 @@ _NEXT_ADVANCE = -1.0
 def _named(names, name, what):
     known = ", ".join(repr(key) for key in names) or "none"
     return UnknownNameError(f"there is no {what} {name!r}; there is {known}")
+
+
+def _seconds(value, what):
+    try:
+        value = float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{what} is a number of seconds, not {value!r}") from None
+    if math.isnan(value):
+        raise ValueError(f"{what} is a number of seconds, not nan")
+    return value
+
+
+def _ramp(value):
+    if value is None:
+        return _NEXT_ADVANCE
+    value = _seconds(value, "a ramp")
+    if value < 0:
+        raise ValueError(f"a ramp takes 0 seconds or more, not {value}; None: until the next advance ends")
+    return value
 
 
 class Body:
@@ -228,7 +248,7 @@ class Drive(_Groups):
 
     def set(self, name: str, value, ramp: float | None = None) -> None:
         """Moves the group straight on to a displacement, in `ramp` seconds; None: until the next advance ends."""
-        self._send(name, value, _NEXT_ADVANCE if ramp is None else float(ramp))
+        self._send(name, value, _ramp(ramp))
 
 
 class Loads(_Groups):
@@ -241,7 +261,7 @@ class Loads(_Groups):
 
     def set(self, name: str, value, ramp: float | None = 0.0) -> None:
         """Changes the load straight on, in `ramp` seconds; None: until the next advance ends."""
-        self._send(name, value, _NEXT_ADVANCE if ramp is None else float(ramp))
+        self._send(name, value, _ramp(ramp))
 
 
 class State:
@@ -359,7 +379,7 @@ class Simulation:
         """
         if (dt is None) == (until is None):
             raise TypeError("advance takes a step, advance(0.01), or a time, advance(until=0.5)")
-        until = self.time + float(dt) if until is None else float(until)
+        until = self.time + _seconds(dt, "a step") if until is None else _seconds(until, "a time")
         watches = self._on_step or self._on_contact or stop
         self._change(_channel.ADVANCE, a=_channel.bits(until), b=1 if watches else 0, on_step=lambda: self._tell(stop))
         return self.time
