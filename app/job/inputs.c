@@ -18,8 +18,9 @@ static void record_digest(Record *record, const char *key, uint64_t digest) {
   record_text(record, key, text);
 }
 
-// Places, elements and which coordinates are prescribed, of each body or obstacle with a mesh.
-static void record_meshes(const FemModel *model, Record *record) {
+// Places and elements of each body or obstacle with a mesh are its shape; and which coordinates are
+// prescribed.
+static void record_meshes(const FemModel *model, Record *record, Record *shapes) {
   for (int b = 0; b < model->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
     size_t first = 3 * (size_t)body->vertex_begin,
@@ -27,6 +28,7 @@ static void record_meshes(const FemModel *model, Record *record) {
     uint64_t digest = digest_bytes(DIGEST_START, model->rest + first, values * sizeof *model->rest);
     digest = digest_bytes(digest, model->tets[body->tet_begin],
                           (size_t)(body->tet_end - body->tet_begin) * sizeof *model->tets);
+    record_digest(shapes, body->name ? body->name : "?", digest);
     digest = digest_bytes(digest, model->is_prescribed + first, values * sizeof *model->is_prescribed);
     record_digest(record, body->name ? body->name : "?", digest);
   }
@@ -62,7 +64,8 @@ static Status record_weights(const FemSceneDef *scene, Record *record) {
 }
 
 Status app_inputs_record(const FemSceneDef *scene, const FemModel *model, Record *record) {
-  record_meshes(model, record_child(record, "meshes"));
+  Record *meshes = record_child(record, "meshes"), *shapes = record_child(record, "shapes");
+  record_meshes(model, meshes, shapes);
   return record_weights(scene, record);
 }
 

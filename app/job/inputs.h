@@ -7,7 +7,8 @@
 #include "base/files/record.h"
 #include "fem/model/model.h"
 
-// Adds `meshes` (a digest a body: places, elements, which coordinates are unknown), `weights_file` and
+// Adds `meshes` (a digest a body: places, elements, which coordinates are unknown), `shapes` (places and
+// elements alone), `weights_file` and
 // `weights` ("none": the model has no such file). STATUS_IO: weights that cannot be read; STATUS_MEMORY.
 Status app_inputs_record(const FemSceneDef *scene, const FemModel *model, Record *record);
 

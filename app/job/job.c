@@ -10,6 +10,7 @@
 #include "app/cli/format.h"
 #include "app/cli/versions.h"
 #include "app/job/inputs.h"
+#include "app/job/start.h"
 #include "app/job/stiffness.h"
 #include "app/scene/overlap.h"
 #include "app/scene/read.h"
@@ -120,6 +121,7 @@ Status app_job_open(AppJob *job, const AppJobOptions *options, const char *overl
   }
   if (!status && !(job->inputs = record_new())) status = status_no_memory("the run's inputs");
   if (!status) status = app_inputs_record(&job->scene, &job->model, job->inputs);
+  if (!status) status = app_start_read(&job->model, job->directory, job->inputs);
   if (!status) warn_of_scale(job);
   if (status) app_job_close(job);
   return status;

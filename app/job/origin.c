@@ -43,10 +43,10 @@ Status app_origin_make(const AppJob *job, const AppJobOptions *options, const ch
 }
 
 Status app_origin_compare(const Record *was, const Record *is, const char *path) {
-  static const char *const keys[] = {"program", "scene", "meshes", "weights"};
+  static const char *const keys[] = {"program", "scene", "meshes", "weights", "start"};
   RecordDifference d = {{0}, {0}, {0}};
   int k = 0;
-  while (k < 4 && !record_differ(record_find(was, keys[k]), record_find(is, keys[k]), &d)) k++;
+  while (k < 5 && !record_differ(record_find(was, keys[k]), record_find(is, keys[k]), &d)) k++;
   static const char advice[] = "put it back, or begin anew with `tetlap run`";
   switch (k) {
   case 0:
@@ -61,6 +61,9 @@ Status app_origin_compare(const Record *was, const Record *is, const char *path)
   case 3:
     return status_fail(STATUS_INPUT, "%s: the weights in %s have changed; %s", path,
                        record_find_text(is, "weights_file"), advice);
+  case 4:
+    return status_fail(STATUS_INPUT, "%s: the end state that the run started from has changed; %s", path,
+                       advice);
   default:
     return STATUS_OK;
   }

@@ -7,8 +7,8 @@
 
 #include "fem/model/compliance.h"
 
-// "5.2e+07 … 1e+08 Pa/m, by the elements at curved surfaces ('shaft' and 'ring'), …": of all that can meet. With
-// a pressure law it says for what c is left.
+// "5.2e+07 … 1e+08 Pa/m, by the elements at curved surfaces ('shaft' and 'ring'), …": of all that can meet.
+// With a pressure law it says for what c is left.
 void app_stiffness_describe(const FemModel *model, const FemCompliance *choice, char *text, size_t size);
 
 // "curved edges in 4 parts ('shaft', 'ring')"; empty: all are whole.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gravity: m g on every vertex of a body; its energy is −Σ m g · x. In a static scene it grows from nothing
 // to all of it, s m g, until the first frame, so that a step of load can be halved; its energy is that of
-// rest and −s Σ m g · (x − X).
+// rest and −s Σ m g · (x − X). A run that starts from another one's end state has all of it at once.
 #include "fem/effect/gravity.h"
 
 #include <math.h>
@@ -28,7 +28,8 @@ static Status create(void **self, const FemModel *model) {
 }
 
 double fem_gravity_share(const FemModel *model, double time) {
-  return model->scene->is_static ? fmin(time / fem_scene_frame_time(model->scene, 1), 1) : 1;
+  bool grows = model->scene->is_static && !model->start;
+  return grows ? fmin(time / fem_scene_frame_time(model->scene, 1), 1) : 1;
 }
 
 double fem_gravity_ramp_work(const FemModel *model, double share, const double *positions) {

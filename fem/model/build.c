@@ -246,6 +246,7 @@ void fem_model_destroy(FemModel *model) {
   memory_free(model->bodies);
   memory_free(model->mass);
   memory_free(model->initial_velocity);
+  fem_model_start_destroy(model->start);
   memory_free(model->inner);
   memory_free(model->is_prescribed);
   fem_model_division_destroy(model);

@@ -77,17 +77,18 @@ Status fem_model_drivers_create(FemModel *model, const FemMesh *meshes) {
 
 void fem_model_drivers_move(const FemModel *model, double released, double time, double *positions,
                             double *velocities) {
+  const double *from = model->start ? model->start->positions : model->rest;
   for (int d = 0; d < model->driver_count; d++) {
     const FemModelDriver *driver = &model->drivers[d];
     for (int i = 0; i < driver->dof_count && !fem_model_is_released(driver, released); i++) {
       int dof = driver->dofs[i];
       double position[3], velocity[3];
       if (driver->is_fixed) {
-        positions[dof] = model->rest[dof];
+        positions[dof] = from[dof];
         velocities[dof] = 0;
         continue;
       }
-      fem_drive_point(driver->def, time, model->rest + (dof - dof % 3), position, velocity);
+      fem_drive_point(driver->def, time, from + (dof - dof % 3), position, velocity);
       positions[dof] = position[dof % 3];
       velocities[dof] = velocity[dof % 3];
     }

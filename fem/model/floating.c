@@ -51,10 +51,19 @@ Vec3 fem_model_common_part(const FemModel *model, double released, Vec3 velocity
   return without_normals(model->scene, velocity);
 }
 
+// Of a body that starts as another run left it.
+static Vec3 mean_velocity(const FemModel *model, int body) {
+  Vec3 momentum = {0, 0, 0};
+  for (int v = model->bodies[body].vertex_begin; v < model->bodies[body].vertex_end; v++)
+    momentum =
+        vec3_add(momentum, vec3_scale(model->mass[v], vec3_at(model->initial_velocity + 3 * (size_t)v)));
+  return vec3_scale(1 / model->bodies[body].mass, momentum);
+}
+
 Vec3 fem_model_common_start(const FemModel *model) {
   Vec3 momentum = {0, 0, 0};
   for (int b = 0; b < model->scene->body_count; b++) {
-    Vec3 velocity = vec3_at(model->scene->bodies[b].velocity);
+    Vec3 velocity = model->start ? mean_velocity(model, b) : vec3_at(model->scene->bodies[b].velocity);
     momentum = vec3_add(momentum, vec3_scale(model->bodies[b].mass, velocity));
   }
   return fem_model_common_part(model, 0, vec3_scale(1 / fem_model_mass(model), momentum));

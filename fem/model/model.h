@@ -8,6 +8,7 @@
 #include "contact/def.h"
 #include "fem/element/element.h"
 #include "fem/element/quadratic.h"
+#include "fem/model/start.h"
 #include "fem/scene/load.h"
 #include "fem/scene/probe.h"
 #include "fem/scene/scene.h"
@@ -51,6 +52,7 @@ typedef struct FemModel {
   double *mass;                            // lumped, obstacles 0 [kg]                  (vertex_count)
   unsigned char *inner;     // bit k: on the k-th part of the boundary that is no surface (vertex_count)
   double *initial_velocity; // [m/s]                                     (vertex_count, 3)
+  FemStart *start;          // owned; NULL: the bodies start at rest, as placed
   int free_count;           // of coordinates that nothing prescribes
   bool *is_prescribed;      // by a driver                               (3·vertex_count)
   FemModelDriver *drivers;  //                                           (driver_count)

@@ -13,6 +13,14 @@ double fem_model_speed_share(const FemModel *model) {
   return FEM_OF_PRESENT_SPEED * scene->tolerance;
 }
 
+// Of a body's vertices, where the run starts from another one's end state.
+static double fastest_of(const FemModel *model, int body, Vec3 common) {
+  double fastest = 0;
+  for (int v = model->bodies[body].vertex_begin; v < model->bodies[body].vertex_end; v++)
+    fastest = fmax(fastest, vec3_length(vec3_sub(vec3_at(model->initial_velocity + 3 * (size_t)v), common)));
+  return fastest;
+}
+
 // The fastest at t = 0, or after falling the smallest body's length; infinite where neither is given.
 static double expected_speed(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
@@ -20,6 +28,7 @@ static double expected_speed(const FemModel *model) {
   double fastest = scene->has_gravity ? sqrt(vec3_length(vec3_at(scene->gravity)) * model->length) : 0;
   for (int b = 0; b < scene->body_count; b++) {
     const FemBodyDef *body = &scene->bodies[b];
+    if (model->start) fastest = fmax(fastest, fastest_of(model, b, common));
     fastest = fmax(fastest, vec3_length(vec3_sub(vec3_at(body->velocity), common)) +
                                 0.5 * model->length * vec3_length(vec3_at(body->spin)));
   }

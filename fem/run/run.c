@@ -109,7 +109,7 @@ static Status begin_record(FemRunState *run) {
                   fem_model_strain_energy(run->model, FEM_ROUNDING));
   fem_run_frames_keep_extremes(run->result, &measures);
   fem_trouble_add(&run->result->trouble, run->time, &measures.trouble);
-  if (!run->options->from) TRY(warn_of_overlaps(&run->system, &run->trial));
+  if (!run->options->from && !run->model->start) TRY(warn_of_overlaps(&run->system, &run->trial));
   // Files of an earlier run in this folder are about to be replaced: all of them go, the checkpoint too.
   if (!run->options->from) {
     TRY(fem_recorder_clear(&run->recorder));
@@ -135,12 +135,24 @@ static Status begin_motion(FemRunState *run) {
   return fem_run_stage_begin(run, run->next_step);
 }
 
+// The end state of another run need not be an equilibrium of this scene: frame 0 is.
+static Status balance_start(FemRunState *run) {
+  Status status = fem_statics_step(&run->statics, run->time, run->time, run->u);
+  if (status == STATUS_RETRY)
+    return status_fail(STATUS_SOLVER,
+                       "from the end state of `start`, t = %.9g s: %s; let the changes come "
+                       "in by tables or formulas of t",
+                       run->time, status_message());
+  return status;
+}
+
 static Status begin_statics(FemRunState *run) {
   const FemCheckpoint *from = &run->checkpoint;
   TRY(fem_statics_create(&run->statics, &run->system, &run->trial,
                          fem_solver_ops(fem_run_choice(run->model, &run->system.numbering).kind)));
   TRY(begin_system(run, 0));
   TRY(fem_statics_continue(&run->statics, run->time, run->u, from->force_scale, from->driven_work));
+  if (run->next_frame == 0 && run->model->start) TRY(balance_start(run));
   if (run->next_frame == 0) return begin_record(run);
   FemMeasures measures;
   TRY(fem_run_frames_measure(run, &measures));

@@ -72,6 +72,7 @@ void fem_scene_destroy(FemSceneDef *scene) {
   memory_free(scene->status_reference);
   memory_free(scene->path);
   memory_free(scene->title);
+  memory_free(scene->start);
   *scene = (FemSceneDef){0};
 }
 

@@ -213,6 +213,8 @@ typedef struct FemSceneDef {
   double gravity[3];        // [m/s²]
   double stiffness_damping; // β [s] of every body whose material gives none
   FemContactDef contact;
+  char *start; // folder of the run from whose end state this one starts, from the scene file; NULL: rest
+  bool starts_anyhow; // though that run has failed or was interrupted
   // time
   double end;                              // [s]
   bool is_static;                          // equilibria only: time is the parameter of loads and motions

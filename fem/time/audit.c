@@ -24,6 +24,7 @@ void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, doub
                       .first = total,
                       .lowest = total,
                       .scale = floor,
+                      .dissipated_at_start = energy->plastic_work + energy->friction_work,
                       .gravity_at_start = energy->gravity - energy->common_gravity,
                       .dissipated_power = energy->dissipated_power,
                       .driven_power = energy->driven_power};
@@ -66,7 +67,7 @@ FemAudit fem_audit_next_within(const FemAudit *audit, double time, const FemEner
   next.uncertain += 2 * half_step * (mean - certain);
   next.driven_work += half_step * (audit->driven_power + energy->driven_power);
   next.work = next.driven_work + energy->applied_work;
-  next.dissipated = next.damped + energy->plastic_work + energy->friction_work;
+  next.dissipated = next.damped + energy->plastic_work + energy->friction_work - audit->dissipated_at_start;
   next.dissipated_power = energy->dissipated_power;
   next.driven_power = energy->driven_power;
   next.total = stored(energy) + next.dissipated - next.work;

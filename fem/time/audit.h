@@ -36,6 +36,7 @@ typedef struct FemAudit {
   double scale;       // the scene's energy: largest of its parts so far, gravity from its start, without that
                       // of the common velocity (fem/model/floating.h) [J]
   double gravity_at_start;
+  double dissipated_at_start; // by plasticity and friction, in the run whose end state this one starts from [J]
   double dissipated_power, driven_power; // at `time` [W]
   double open;                           // of a static scene: fem_audit_load_step [J]
   double load_change;                    // of its last step of load [J/s²]

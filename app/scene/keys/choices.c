@@ -127,6 +127,13 @@ const SceneChoices app_scene_choices_coplanar = {
         {"clip", "they are blended with clipping, the more the closer the faces are to coplanar"},
         {0}}};
 
+// The number is FemSceneDef.starts_anyhow.
+const SceneChoices app_scene_choices_outcomes = {
+    .listed = (const SceneChoice[]){
+        {"finished", "it reached its end"},
+        {"any", "also one that failed or was interrupted: from the last state that it left"},
+        {0}}};
+
 // The number is FemSceneDef.history.
 const SceneChoices app_scene_choices_histories = {
     .listed =

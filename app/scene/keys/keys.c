@@ -22,6 +22,8 @@ static const SceneKey scene_keys[] = {
     {"title", SCENE_TEXT, AT(FemSceneDef, title), .help = "a description"},
     {"time", SCENE_SECTION, .required = "{end: 0.5}", .section = &app_scene_keys_run_time,
      .help = "duration and accuracy"},
+    {"start", SCENE_SECTION, .absent_help = "at rest", .section = &app_scene_keys_run_start,
+     .help = "the run from whose end state this one starts, with other parameters, loads, contacts, times"},
     {"effects", SCENE_SECTION, .section = &effects, .help = "acts on all bodies"},
     {"bodies", SCENE_LIST, AT(FemSceneDef, bodies),
      .required = "[{name: block, mesh: block.msh, material: {young: 1e6, poisson: 0.4, density: 1000}}]",

@@ -51,6 +51,16 @@ static const SceneKey time_keys[] = {
 const SceneSection app_scene_keys_run_time = {
     .help = "duration and accuracy", .keys = time_keys, .finish = finish_time};
 
+static const SceneKey start_keys[] = {
+    {"run", SCENE_TEXT, AT(FemSceneDef, start), .required = "out/press",
+     .help = "the folder that it wrote into, from the scene file; of the same bodies, with the same meshes"},
+    {"outcome", SCENE_CHOICE, AT(FemSceneDef, starts_anyhow), .fallback = "finished",
+     .choices = &app_scene_choices_outcomes, .help = "how it must have ended"},
+    {0},
+};
+const SceneSection app_scene_keys_run_start = {
+    .help = "the end state of another run", .keys = start_keys, .shorthand = "run"};
+
 // The other names are of solvers that there are.
 static const char *finish_solver(void *self, const char **key) {
   FemSceneDef *scene = self;

@@ -25,6 +25,7 @@ extern const SceneSection app_scene_keys_load;                                  
 extern const SceneSection app_scene_keys_body;                                       // FemBodyDef
 extern const SceneSection app_scene_keys_obstacle;                                   // FemObstacleDef
 extern const SceneSection app_scene_keys_contact; // FemContactDef, from FemSceneDef
-extern const SceneSection app_scene_keys_run_time, app_scene_keys_run_solver, app_scene_keys_run_output;
+extern const SceneSection app_scene_keys_run_time, app_scene_keys_run_start, app_scene_keys_run_solver,
+    app_scene_keys_run_output;
 
 #endif

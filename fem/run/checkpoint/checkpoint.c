@@ -13,17 +13,18 @@ Status fem_checkpoint_create(FemCheckpoint *checkpoint, int vertex_count) {
   checkpoint->velocity = memory_zeroed(values, sizeof(double));
   checkpoint->ledger = memory_zeroed(0, sizeof(double));
   checkpoint->rest = memory_zeroed(0, sizeof(double));
+  checkpoint->interfaces = memory_zeroed(1, 1);
   checkpoint->so_far.counters = record_new();
   if (checkpoint->displacement && checkpoint->velocity && checkpoint->ledger && checkpoint->rest &&
-      checkpoint->so_far.counters)
+      checkpoint->interfaces && checkpoint->so_far.counters)
     return STATUS_OK;
   fem_checkpoint_destroy(checkpoint);
   return status_no_memory("a checkpoint");
 }
 
-static bool copy_origin(FemCheckpoint *copy, const char *origin) {
-  copy->origin = origin ? memory_copy(origin, strlen(origin) + 1, 1) : NULL;
-  return !origin || copy->origin;
+static bool copy_text(char **copy, const char *text) {
+  *copy = text ? memory_copy(text, strlen(text) + 1, 1) : NULL;
+  return !text || *copy;
 }
 
 static bool copy_effects(FemCheckpoint *copy, const FemCheckpoint *checkpoint) {
@@ -39,7 +40,7 @@ static bool copy_effects(FemCheckpoint *copy, const FemCheckpoint *checkpoint) {
 Status fem_checkpoint_copy(FemCheckpoint *copy, const FemCheckpoint *checkpoint) {
   size_t values = 3 * (size_t)checkpoint->vertex_count;
   *copy = *checkpoint;
-  copy->origin = NULL;
+  copy->origin = copy->interfaces = NULL;
   copy->effect_count = 0;
   copy->ledger = memory_copy(checkpoint->ledger, checkpoint->ledger_count, sizeof(double));
   copy->rest = memory_copy(checkpoint->rest, checkpoint->rest_count, sizeof(double));
@@ -48,7 +49,8 @@ Status fem_checkpoint_copy(FemCheckpoint *copy, const FemCheckpoint *checkpoint)
   copy->so_far.counters = record_new();
   record_merge(copy->so_far.counters, checkpoint->so_far.counters);
   if (copy->displacement && copy->velocity && copy->ledger && copy->rest && copy->so_far.counters &&
-      copy_origin(copy, checkpoint->origin) && copy_effects(copy, checkpoint))
+      copy_text(&copy->origin, checkpoint->origin) && copy_text(&copy->interfaces, checkpoint->interfaces) &&
+      copy_effects(copy, checkpoint))
     return STATUS_OK;
   fem_checkpoint_destroy(copy);
   return status_no_memory("a checkpoint");
@@ -56,6 +58,7 @@ Status fem_checkpoint_copy(FemCheckpoint *copy, const FemCheckpoint *checkpoint)
 
 void fem_checkpoint_destroy(FemCheckpoint *checkpoint) {
   memory_free(checkpoint->origin);
+  memory_free(checkpoint->interfaces);
   memory_free(checkpoint->displacement);
   memory_free(checkpoint->velocity);
   memory_free(checkpoint->ledger);

@@ -18,7 +18,8 @@
 #include "fem/time/audit.h"
 
 enum { FEM_CHECKPOINT_NAME = 32 };
-static const char FEM_CHECKPOINT_FILE[] = "checkpoint.h5"; // in the run's folder
+// In the run's folder: what a run that was stopped goes on from, and the state in which one ended.
+static const char FEM_CHECKPOINT_FILE[] = "checkpoint.h5", FEM_CHECKPOINT_END[] = "end.h5";
 
 // What an effect remembers (fem/effect/state.h).
 typedef struct FemCheckpointEffect {
@@ -41,7 +42,8 @@ typedef struct FemCheckpoint {
   FemRunResult so_far; // numbers and counters; its names, trajectory and effects' names are not kept
   FemCheckpointEffect effects[FEM_MAX_EFFECTS]; // in the system's order; costs in so_far (effect_count)
   int effect_count;
-  double *ledger; // what a run keeps account of (fem/measure/ledger.h), owned       (ledger_count)
+  char *interfaces; // those of contact in the system's order, a line "A, B" each; owned
+  double *ledger;   // what a run keeps account of (fem/measure/ledger.h), owned       (ledger_count)
   size_t ledger_count;
   double *rest; // bodies at rest (fem/run/rest/rest.h), owned                            (rest_count)
   size_t rest_count;

@@ -14,7 +14,7 @@
 #include "fem/run/checkpoint/numbers.h"
 
 // HDF5 looks for its own beginning at 0, 512, 1024 …
-enum { HEAD_SIZE = 512, FORMAT = 13, PATH_SIZE = 96 };
+enum { HEAD_SIZE = 512, FORMAT = 14, PATH_SIZE = 96 };
 static const char MAGIC[] = "tetlap checkpoint";
 
 // An effect's cost, one array.
@@ -192,6 +192,7 @@ static bool write_contents(hid_t file, const FemCheckpoint *checkpoint, const ch
                write_values(file, "displacement", FEM_REAL, 2, shape, checkpoint->displacement, "m") &&
                write_values(file, "velocity", FEM_REAL, 2, shape, checkpoint->velocity, "m/s") &&
                write_text(file, "origin", checkpoint->origin ? checkpoint->origin : "") &&
+               write_text(file, "interfaces", checkpoint->interfaces) &&
                write_text(file, "counters", counters);
   const hsize_t ledger_count = checkpoint->ledger_count;
   works = works &&
@@ -393,6 +394,7 @@ static Status read_arrays(hid_t file, FemCheckpoint *checkpoint, const char *pat
   checkpoint->ledger_count = (size_t)shape[0];
   TRY(read_array(file, path, "rest", 1, shape, &checkpoint->rest));
   checkpoint->rest_count = (size_t)shape[0];
+  TRY(read_text(file, path, "interfaces", &checkpoint->interfaces));
   return read_text(file, path, "origin", &checkpoint->origin);
 }
 

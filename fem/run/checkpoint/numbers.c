@@ -43,6 +43,7 @@ static const FemCheckpointNumber numbers[] = {
     AUDIT(gain, "J"),
     AUDIT(scale, "J"),
     AUDIT(gravity_at_start, "J"),
+    AUDIT(dissipated_at_start, "J"),
     AUDIT(dissipated_power, "W"),
     AUDIT(driven_power, "W"),
     AUDIT(open, "J"),
@@ -134,7 +135,7 @@ static const FemCheckpointNumber numbers[] = {
 #undef AT
 
 // Whoever adds a number to one of these adds it to the list above.
-static_assert(sizeof(FemAudit) == 16 * sizeof(double), "numbers[] lists every number of FemAudit");
+static_assert(sizeof(FemAudit) == 17 * sizeof(double), "numbers[] lists every number of FemAudit");
 static_assert(sizeof(FemRunPhases) == 15 * sizeof(double), "numbers[] lists every phase");
 static_assert(sizeof(FemIntegratorStats) == 10 * sizeof(double), "numbers[] lists the integrator's counts");
 static_assert(sizeof(FemSolverStats) == 10 * sizeof(double), "numbers[] lists the solver's counts");

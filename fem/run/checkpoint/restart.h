@@ -6,8 +6,8 @@
 #include "fem/effect/system.h"
 #include "fem/run/checkpoint/checkpoint.h"
 
-// The checkpoint with which a run begins that is not resumed: initial velocities, and displacements
-// (vertex_count, 3) unless NULL.
+// The checkpoint with which a run begins that is not resumed: initial velocities, what the model starts with
+// (fem/model/start.h), and displacements (vertex_count, 3) unless NULL.
 Status fem_restart_begin(FemCheckpoint *checkpoint, const FemModel *model, const double *displacement);
 
 // Makes a checkpoint with the state, whose unknowns are u and v, the effects' histories and the counts so

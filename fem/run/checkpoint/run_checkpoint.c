@@ -10,11 +10,16 @@
 #include "base/memory.h"
 #include "fem/run/checkpoint/restart.h"
 
-static Status write_checkpoint(FemRunState *run) {
-  char *path = file_join(run->options->directory, FEM_CHECKPOINT_FILE);
+static Status write_file(const FemRunState *run, const FemCheckpoint *checkpoint, const char *name) {
+  char *path = file_join(run->options->directory, name);
   if (!path) return status_no_memory("a file name");
-  Status status = fem_checkpoint_write(&run->checkpoint, path);
+  Status status = fem_checkpoint_write(checkpoint, path);
   memory_free(path);
+  return status;
+}
+
+static Status write_checkpoint(FemRunState *run) {
+  Status status = write_file(run, &run->checkpoint, FEM_CHECKPOINT_FILE);
   run->is_written = status == STATUS_OK;
   run->written_s = clock_wall_s();
   return status;
@@ -27,13 +32,18 @@ Status fem_run_checkpoint_offer(FemRunState *run) {
   return is_wanted && is_time ? write_checkpoint(run) : STATUS_OK;
 }
 
-Status fem_run_checkpoint_remove(const FemRunState *run) {
-  if (!run->options->directory) return STATUS_OK;
-  char *path = file_join(run->options->directory, FEM_CHECKPOINT_FILE);
+static Status remove_file(const FemRunState *run, const char *name) {
+  char *path = file_join(run->options->directory, name);
   if (!path) return status_no_memory("a file name");
   file_remove(path);
   memory_free(path);
   return STATUS_OK;
+}
+
+Status fem_run_checkpoint_remove(const FemRunState *run) {
+  if (!run->options->directory) return STATUS_OK;
+  TRY(remove_file(run, FEM_CHECKPOINT_FILE));
+  return remove_file(run, FEM_CHECKPOINT_END);
 }
 
 long long fem_run_checkpoint_steps(int unknown_count) {
@@ -109,10 +119,25 @@ Status fem_run_checkpoint_take(FemRunState *run, double force_scale, double driv
   return fem_run_checkpoint_offer(run);
 }
 
+// The last accepted state. What a part between two checkpoints needs besides is left out.
+static Status write_end(FemRunState *run) {
+  FemCheckpoint end;
+  if (run->model->scene->checkpoint_frames == 0 || !run->system.model || run->next_frame == 0)
+    return STATUS_OK;
+  fem_system_scatter(&run->system, run->time, run->u, run->v, &run->trial);
+  TRY(fem_restart_collect(&end, &run->system, &run->trial, run->u, run->v, run->result));
+  end.origin = run->checkpoint.origin;
+  Status status = write_file(run, &end, FEM_CHECKPOINT_END);
+  end.origin = NULL;
+  fem_checkpoint_destroy(&end);
+  return status;
+}
+
 Status fem_run_checkpoint_leave(FemRunState *run, Status status) {
   bool may_go_on = status == STATUS_INTERRUPTED || status == STATUS_IO || status == STATUS_MEMORY;
   if (!run->options->directory || !run->recorder.system) return STATUS_OK;
-  if (status == STATUS_OK) return fem_run_checkpoint_remove(run);
+  if (status == STATUS_OK) TRY(remove_file(run, FEM_CHECKPOINT_FILE));
+  if (status == STATUS_OK || status == STATUS_SOLVER) return write_end(run);
   return may_go_on && run->model->scene->checkpoint_frames != 0 && !run->is_written ? write_checkpoint(run)
                                                                                     : STATUS_OK;
 }

@@ -16,10 +16,11 @@ Status fem_run_checkpoint_take(FemRunState *run, double force_scale, double driv
 // Writes the checkpoint if the last one that was written is old enough.
 Status fem_run_checkpoint_offer(FemRunState *run);
 
+// Removes those of an earlier run, and its end state.
 Status fem_run_checkpoint_remove(const FemRunState *run);
 
-// At the end: a run that was stopped, or failed for want of room, may be taken up; one that has ended need
-// not.
+// At the end: a run that was stopped, or failed for want of room, may be taken up; one that has ended, or
+// came to where its solver gives up, leaves its last state, from which another may start.
 Status fem_run_checkpoint_leave(FemRunState *run, Status status);
 
 // How many steps lie between two checkpoints where the scene does not say how many frames.

@@ -177,6 +177,8 @@ static void check_obstacles(const FemSceneDef *scene) {
 
 static void check_settings(const FemSceneDef *scene) {
   ck_assert_str_eq(scene->title, "Every key: «ü»");
+  ck_assert_str_eq(scene->start, "../press");
+  ck_assert(scene->starts_anyhow);
   ck_assert(scene->has_gravity);
   ck_vector(scene->gravity, 0, 0, -9.81);
   ck_assert_double_eq(scene->stiffness_damping, 2e-3);

@@ -226,7 +226,7 @@ START_TEST(a_checkpoint_of_another_format_names_the_program_that_wrote_it) {
   char *number = strstr(text, "checkpoint ") + strlen("checkpoint ");
   memcpy(number, "10", 2);
   write_file(text, size);
-  expect(STATUS_INPUT, "is of format 10, written by tetlap 0.0.9; this program reads format 13");
+  expect(STATUS_INPUT, "is of format 10, written by tetlap 0.0.9; this program reads format 14");
   memory_free(text);
   fem_checkpoint_destroy(&written);
 }
