@@ -201,7 +201,7 @@ END_TEST
 START_TEST(a_right_head_does_not_make_a_checkpoint) {
   char file[560], digest[DIGEST_TEXT];
   static const char *const heads[] = {
-      "tetlap checkpoint 13\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n",
+      "tetlap checkpoint 14\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n",
       "tetlap checkpoint 2\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n"};
   static const char *const words[] = {"is damaged", "is of format 2, written by another program"};
   for (int k = 0; k < 2; k++) {
