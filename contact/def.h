@@ -24,6 +24,7 @@ typedef enum ContactShapeKind {
   CONTACT_SHAPE_HALFSPACE, // { x : normal·(x − point) ≤ 0 }
   CONTACT_SHAPE_BALL,      // { x : |x − point| ≤ radius }
   CONTACT_SHAPE_CONVEX,    // `convex` about `point`, along `axes`
+  CONTACT_SHAPE_CYLINDER,  // of `radius` and `half_length` about axes[2] through `point`
 } ContactShapeKind;
 
 // `point` moves by point(t) = point + t velocity, or as `move` says, which returns position and velocity at a
@@ -34,7 +35,9 @@ typedef struct ContactShape {
   ContactShapeKind kind;
   double point[3];                    // [m]
   double normal[3];                   // of a half-space, unit length
-  double radius;                      // of a ball [m]
+  double radius;                      // of a ball, a cylinder [m]
+  double half_length;                 // of a cylinder [m]
+  double round;                       // of a cylinder: its radius where the depth has the slope 1 [m]
   const struct ContactConvex *convex; // of that kind; borrowed
   double axes[3][3];                  // its own axes at rest, in space, orthonormal and right-handed
   double velocity[3];                 // [m/s]

@@ -250,11 +250,6 @@ static double press_with_gradient(const Question *question, const double tet[12]
   return (double)(s * sums.depth);
 }
 
-// What differences may leave of a negative eigenvalue, as a share of the largest diagonal entry. In a flat
-// cell rounding leaves more, for the gradient's own is divided by the step and grows with rest volume over
-// volume.
-static const double ROUGH = 1e-4;
-
 static void differentiate(const Question *question, const double tet[12], double hessian[144]) {
   static const double STEP = 1e-5; // not chosen: ε^⅓, where rounding is what a difference omits
   double step = STEP * longest_edge(tet), moved[12], high[12], low[12], volume;
@@ -294,7 +289,7 @@ void contact_ball_press(const double tet[12], const double centre[3], double rad
   double whole = fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9))) / 6;
   double bound = rest_volume / whole / radius * *volume; // with it no eigenvalue is negative but by rounding
   for (int r = 0; r < 12; r++) hessian[13 * r] += bound;
-  contact_definite_mend(hessian, ROUGH);
+  contact_definite_mend(hessian, CONTACT_DEFINITE_ROUGH);
   for (int r = 0; r < 12 && is_full; r++) hessian[13 * r] -= bound;
 }
 

@@ -33,11 +33,6 @@ static double outer_radius(int faces) {
   return sqrt(turn / sin(turn));
 }
 
-double contact_convex_prism_error(int faces) {
-  double outer = outer_radius(faces);
-  return fmax(outer - 1, 1 - outer * cos(M_PI / faces));
-}
-
 void contact_convex_make_prism(ContactConvex *convex, double radius, double half_length, int faces) {
   *convex = (ContactConvex){.plane_count = faces + 2, .edge_count = faces / 2 + 1};
   double outer = radius * outer_radius(faces), turn = 2 * M_PI / faces;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tetrahedron against a convex solid with flat faces (a box, a prism in place of a cylinder), in closed
+// A tetrahedron against a convex solid with flat faces (a box, a prism), in closed
 // form: the overlap with such an obstacle.
 //
 // Only planes that cut the tetrahedron take part. The boundary of the intersection P is made of polygons: P_f
@@ -38,11 +38,9 @@ typedef struct ContactConvex {
 
 // The box |x_c| ≤ half_size_c.
 void contact_convex_make_box(ContactConvex *convex, const double half_size[3]);
-// In place of the cylinder of that radius about z, |z| ≤ half_length: a prism with `faces` (even, 8 …
-// CONTACT_CONVEX_FACE_COUNT) sides whose section has the same area. Its surface is off the cylinder's by no
-// more than contact_convex_prism_error · radius: 0.14 % at 48 faces, 3.3/faces² in general.
+// A prism about z, |z| ≤ half_length, with `faces` (even, 8 … CONTACT_CONVEX_FACE_COUNT) sides whose section
+// has the area of the circle of that radius: what is drawn of a cylinder.
 void contact_convex_make_prism(ContactConvex *convex, double radius, double half_length, int faces);
-double contact_convex_prism_error(int faces);
 
 // V [m³] and, where not NULL, ∂V/∂x [m²] of a tetrahedron of either orientation. Where a face lies in a plane
 // V has one-sided derivatives only.

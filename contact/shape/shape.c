@@ -7,6 +7,7 @@
 #include "contact/limits.h"
 #include "contact/shape/ball.h"
 #include "contact/shape/convex.h"
+#include "contact/shape/cylinder.h"
 #include "contact/shape/halfspace.h"
 #include "overlap/separation.h"
 
@@ -42,6 +43,11 @@ static Pose pose_of(const ContactShape *shape, double time) {
         shape->move ? vec3_sub(carry(shape, time, vec3_add(rest, axis), &velocity), pose.point) : axis;
   }
   return pose;
+}
+
+static Vec3 in_frame(const Pose *pose, Vec3 x) {
+  Vec3 arm = vec3_sub(x, pose->point);
+  return (Vec3){vec3_dot(pose->axes[0], arm), vec3_dot(pose->axes[1], arm), vec3_dot(pose->axes[2], arm)};
 }
 
 static void to_own_frame(const Pose *pose, const double tet[12], double own[12]) {
@@ -105,20 +111,33 @@ static void turn_hessian(const Pose *pose, double hessian[144]) {
   }
 }
 
-static void overlap_convex(const ContactShape *shape, double time, const double tet[12], double *volume,
-                           double gradient[12]) {
+// Shapes with a frame of their own.
+static bool has_frame(const ContactShape *shape) {
+  return shape->kind == CONTACT_SHAPE_CONVEX || shape->kind == CONTACT_SHAPE_CYLINDER;
+}
+
+static ContactCylinder cylinder_of(const ContactShape *shape) {
+  return (ContactCylinder){shape->radius, shape->half_length, shape->round};
+}
+
+static void overlap_in_frame(const ContactShape *shape, double time, const double tet[12], double *volume,
+                             double gradient[12]) {
   double own[12];
   Pose pose = pose_of(shape, time);
+  ContactCylinder cylinder = cylinder_of(shape);
   to_own_frame(&pose, tet, own);
-  contact_convex_overlap(shape->convex, own, volume, gradient);
+  if (shape->kind == CONTACT_SHAPE_CONVEX)
+    contact_convex_overlap(shape->convex, own, volume, gradient);
+  else
+    contact_cylinder_overlap(&cylinder, own, volume, gradient);
   if (*volume > 0 && gradient) turn_gradient(&pose, gradient);
 }
 
 void contact_shape_overlap(const ContactShape *shape, double time, const double tet[12], double *volume,
                            double gradient[12]) {
   double point[3];
-  if (shape->kind == CONTACT_SHAPE_CONVEX) {
-    overlap_convex(shape, time, tet, volume, gradient);
+  if (has_frame(shape)) {
+    overlap_in_frame(shape, time, tet, volume, gradient);
     return;
   }
   vec3_store(point, contact_shape_point(shape, time));
@@ -131,6 +150,8 @@ void contact_shape_overlap(const ContactShape *shape, double time, const double 
 double contact_shape_middle(const ContactShape *shape) {
   double deepest = INFINITY;
   if (shape->kind == CONTACT_SHAPE_BALL) return shape->radius / 2;
+  if (shape->kind == CONTACT_SHAPE_CYLINDER)
+    return fmin(shape->radius * shape->radius / (2 * shape->round), shape->half_length);
   for (int k = 0; shape->kind == CONTACT_SHAPE_CONVEX && k < shape->convex->plane_count; k++)
     deepest = fmin(deepest, shape->convex->offsets[k]);
   return deepest;
@@ -138,6 +159,7 @@ double contact_shape_middle(const ContactShape *shape) {
 
 double contact_shape_depth(const ContactShape *shape, double time, Vec3 x) {
   double deepest = INFINITY;
+  ContactCylinder cylinder = cylinder_of(shape);
   Pose pose = pose_of(shape, time);
   Vec3 arm = vec3_sub(x, pose.point);
   switch (shape->kind) {
@@ -146,10 +168,12 @@ double contact_shape_depth(const ContactShape *shape, double time, Vec3 x) {
   case CONTACT_SHAPE_BALL:
     return (shape->radius * shape->radius - vec3_dot(arm, arm)) / (2 * shape->radius);
   case CONTACT_SHAPE_CONVEX:
-    arm = (Vec3){vec3_dot(pose.axes[0], arm), vec3_dot(pose.axes[1], arm), vec3_dot(pose.axes[2], arm)};
+    arm = in_frame(&pose, x);
     for (int k = 0; k < shape->convex->plane_count; k++)
       deepest = fmin(deepest, shape->convex->offsets[k] - vec3_dot(shape->convex->normals[k], arm));
     return deepest;
+  case CONTACT_SHAPE_CYLINDER:
+    return contact_cylinder_depth(&cylinder, in_frame(&pose, x));
   }
   return deepest;
 }
@@ -168,6 +192,10 @@ ContactShape contact_shape_shrink(const ContactShape *shape, double depth, struc
     for (int k = 0; k < solid->plane_count; k++) solid->offsets[k] -= depth;
     smaller.convex = solid;
     break;
+  case CONTACT_SHAPE_CYLINDER:
+    smaller.radius = sqrt(fmax(shape->radius * shape->radius - 2 * shape->round * depth, 0));
+    smaller.half_length -= depth;
+    break;
   }
   return smaller;
 }
@@ -176,10 +204,14 @@ void contact_shape_press(const ContactShape *shape, double time, const double te
                          double *volume, double *energy, double gradient[12], double hessian[144],
                          bool is_full) {
   double point[3], own[12];
-  if (shape->kind == CONTACT_SHAPE_CONVEX) {
+  if (has_frame(shape)) {
     Pose pose = pose_of(shape, time);
+    ContactCylinder cylinder = cylinder_of(shape);
     to_own_frame(&pose, tet, own);
-    contact_convex_press(shape->convex, own, rest_volume, volume, energy, gradient, hessian, is_full);
+    if (shape->kind == CONTACT_SHAPE_CONVEX)
+      contact_convex_press(shape->convex, own, rest_volume, volume, energy, gradient, hessian, is_full);
+    else
+      contact_cylinder_press(&cylinder, own, rest_volume, volume, energy, gradient, hessian, is_full);
     if (*volume > 0) turn_gradient(&pose, gradient);
     if (*volume > 0 && hessian) turn_hessian(&pose, hessian);
     return;
@@ -193,10 +225,12 @@ void contact_shape_press(const ContactShape *shape, double time, const double te
 
 double contact_shape_separation(const ContactShape *shape, double time, const double tet[12], double enough) {
   double point[3], own[12];
-  if (shape->kind == CONTACT_SHAPE_CONVEX) {
+  if (has_frame(shape)) {
     Pose pose = pose_of(shape, time);
+    ContactCylinder cylinder = cylinder_of(shape);
     to_own_frame(&pose, tet, own);
-    return contact_convex_separation(shape->convex, own, enough);
+    return shape->kind == CONTACT_SHAPE_CONVEX ? contact_convex_separation(shape->convex, own, enough)
+                                               : contact_cylinder_separation(&cylinder, own);
   }
   vec3_store(point, contact_shape_point(shape, time));
   return shape->kind == CONTACT_SHAPE_BALL ? contact_ball_separation(tet, point, shape->radius)
@@ -204,10 +238,14 @@ double contact_shape_separation(const ContactShape *shape, double time, const do
 }
 
 double contact_shape_gap(const ContactShape *shape, double time, Vec3 x) {
+  if (shape->kind == CONTACT_SHAPE_CYLINDER) {
+    Pose pose = pose_of(shape, time);
+    Vec3 own = in_frame(&pose, x);
+    return fmax(hypot(own.x, own.y) - shape->radius, fabs(own.z) - shape->half_length);
+  }
   if (shape->kind == CONTACT_SHAPE_CONVEX) {
     Pose pose = pose_of(shape, time);
-    Vec3 arm = vec3_sub(x, pose.point),
-         own = {vec3_dot(pose.axes[0], arm), vec3_dot(pose.axes[1], arm), vec3_dot(pose.axes[2], arm)};
+    Vec3 own = in_frame(&pose, x);
     double farthest = -INFINITY;
     for (int k = 0; k < shape->convex->plane_count; k++)
       farthest = fmax(farthest, vec3_dot(shape->convex->normals[k], own) - shape->convex->offsets[k]);
@@ -252,6 +290,25 @@ static double highest_above(const ContactShape *shape, double time, const double
   return highest;
 }
 
+// Above planes that touch a cylinder all round, and above its ends.
+static double highest_above_cylinder(const ContactShape *shape, double time, const double *positions,
+                                     int begin, int end) {
+  enum { DIRECTION_COUNT = 16 };
+  Pose pose = pose_of(shape, time);
+  double highest =
+      distance_to_box(pose.point, positions, begin, end) - hypot(shape->radius, shape->half_length);
+  for (int k = 0; k < DIRECTION_COUNT; k++) {
+    double angle = 2 * M_PI * k / DIRECTION_COUNT;
+    Vec3 normal = vec3_add(vec3_scale(cos(angle), pose.axes[0]), vec3_scale(sin(angle), pose.axes[1]));
+    highest = fmax(highest, lowest_above(pose.point, normal, positions, begin, end) - shape->radius);
+  }
+  for (int side = -1; side < 2; side += 2) {
+    double above = lowest_above(pose.point, vec3_scale(side, pose.axes[2]), positions, begin, end);
+    highest = fmax(highest, above - shape->half_length);
+  }
+  return highest;
+}
+
 double contact_shape_clearance(const ContactShape *shape, double time, const double *positions, int begin,
                                int end) {
   Vec3 point = contact_shape_point(shape, time);
@@ -262,6 +319,8 @@ double contact_shape_clearance(const ContactShape *shape, double time, const dou
     return distance_to_box(point, positions, begin, end) - shape->radius;
   case CONTACT_SHAPE_CONVEX:
     return highest_above(shape, time, positions, begin, end);
+  case CONTACT_SHAPE_CYLINDER:
+    return highest_above_cylinder(shape, time, positions, begin, end);
   }
   return 0;
 }
@@ -275,14 +334,24 @@ static double length_of(const ContactShape *shape, Vec3 motion) {
 // A turn by θ moves what lies at the distance r of its axis by 2 r sin ½θ, and ‖ΔR‖ = 2 √2 sin ½θ
 // (Frobenius).
 static double turned_by(const ContactShape *shape, double from, double to) {
-  if (!shape->move || shape->kind != CONTACT_SHAPE_CONVEX) return 0;
+  if (!shape->move || !has_frame(shape)) return 0;
   Pose before = pose_of(shape, from), after = pose_of(shape, to);
   double square = 0;
+  if (shape->kind == CONTACT_SHAPE_CYLINDER)
+    return hypot(shape->radius, shape->half_length) * vec3_length(vec3_sub(after.axes[2], before.axes[2]));
   for (int k = 0; k < 3; k++) {
     Vec3 change = vec3_sub(after.axes[k], before.axes[k]);
     square += vec3_dot(change, change);
   }
   return shape->convex->reach * sqrt(square / 2);
+}
+
+// By the spin; that of a cylinder about its axis moves no surface.
+static double turning_speed(const ContactShape *shape, double time, Vec3 spin) {
+  if (shape->kind == CONTACT_SHAPE_CONVEX) return shape->convex->reach * vec3_length(spin);
+  if (shape->kind != CONTACT_SHAPE_CYLINDER) return 0;
+  Vec3 axis = pose_of(shape, time).axes[2];
+  return hypot(shape->radius, shape->half_length) * vec3_length(vec3_cross(spin, axis));
 }
 
 double contact_shape_motion(const ContactShape *shape, double from, double to) {
@@ -292,8 +361,7 @@ double contact_shape_motion(const ContactShape *shape, double from, double to) {
 
 double contact_shape_speed(const ContactShape *shape, double time) {
   Vec3 point, velocity, spin = spin_of(shape, time, &point, &velocity);
-  double turning = shape->kind == CONTACT_SHAPE_CONVEX ? shape->convex->reach * vec3_length(spin) : 0;
-  return length_of(shape, velocity) + turning;
+  return length_of(shape, velocity) + turning_speed(shape, time, spin);
 }
 
 static bool is_orthonormal(const double axes[3][3]) {
@@ -314,6 +382,12 @@ Status contact_shape_check(const ContactShape *shape) {
   if (shape->kind == CONTACT_SHAPE_CONVEX && !(shape->convex && is_orthonormal(shape->axes)))
     return status_fail(STATUS_INPUT,
                        "contact: obstacle %s needs a solid, and three axes at right angles of length 1",
+                       shape->name);
+  if (shape->kind == CONTACT_SHAPE_CYLINDER &&
+      !(shape->radius > 0 && shape->half_length > 0 && shape->round > 0 && is_orthonormal(shape->axes)))
+    return status_fail(STATUS_INPUT,
+                       "contact: cylinder %s needs a positive radius and length, and three axes at right "
+                       "angles of length 1",
                        shape->name);
   return STATUS_OK;
 }

@@ -17,13 +17,14 @@ static void make_box(const FemObstacleDef *def, ContactShape *shape, ContactConv
 }
 
 // About the axis any two directions will do.
-static void make_cylinder(const FemObstacleDef *def, ContactShape *shape, ContactConvex *solid) {
+static void make_cylinder(const FemObstacleDef *def, ContactShape *shape) {
   Vec3 axis = vec3_at(def->axis);
   axis = vec3_scale(1 / vec3_length(axis), axis);
   Vec3 aside = fabs(axis.x) < 0.6 ? (Vec3){1, 0, 0} : (Vec3){0, 1, 0};
   Vec3 first = vec3_sub(aside, vec3_scale(vec3_dot(aside, axis), axis));
   first = vec3_scale(1 / vec3_length(first), first);
-  contact_convex_make_prism(solid, def->radius, def->length / 2, def->faces);
+  shape->kind = CONTACT_SHAPE_CYLINDER;
+  shape->half_length = def->length / 2, shape->round = def->radius;
   vec3_store(shape->axes[0], first);
   vec3_store(shape->axes[1], vec3_cross(axis, first));
   vec3_store(shape->axes[2], axis);
@@ -38,7 +39,7 @@ void fem_obstacle_shape(const FemObstacleDef *def, ContactShape *shape, ContactC
                           .move = fem_drive_is_still(&def->motion) ? NULL : move_shape};
   vec3_store(shape->point, vec3_at(def->point));
   if (def->kind == FEM_OBSTACLE_BOX) make_box(def, shape, solid);
-  if (def->kind == FEM_OBSTACLE_CYLINDER) make_cylinder(def, shape, solid);
+  if (def->kind == FEM_OBSTACLE_CYLINDER) make_cylinder(def, shape);
   if (def->kind == FEM_OBSTACLE_BALL) shape->kind = CONTACT_SHAPE_BALL;
   if (def->kind != FEM_OBSTACLE_HALFSPACE) return;
   Vec3 normal = vec3_at(def->normal);

@@ -7,8 +7,8 @@
 #include "contact/shape/convex.h"
 #include "fem/scene/scene.h"
 
-// The shape of a definition that is no mesh; it borrows the definition and `solid`, which is filled for a box
-// and a cylinder.
+// The shape of a definition that is no mesh; it borrows the definition and `solid`, which is filled for a
+// box.
 void fem_obstacle_shape(const FemObstacleDef *def, ContactShape *shape, ContactConvex *solid);
 
 #endif

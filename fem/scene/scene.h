@@ -151,7 +151,6 @@ typedef struct FemObstacleDef {
   FemPlacement turn; // of a box about its centre; only axis and angle
   double axis[3];    // of a cylinder
   double length;     // along it [m]
-  int faces;         // of the prism that stands for it
   char *mesh_path;   // else a mesh, or a box as in FemBodyDef
   double box_size[3];
   int box_cells[3];

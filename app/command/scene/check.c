@@ -185,8 +185,7 @@ static void print_obstacle(const AppJob *job, int o) {
   if (def->kind == FEM_OBSTACLE_BOX)
     snprintf(mesh, sizeof mesh, "box of %g m × %g m × %g m", def->size[0], def->size[1], def->size[2]);
   if (def->kind == FEM_OBSTACLE_CYLINDER)
-    snprintf(mesh, sizeof mesh, "cylinder of radius %g m, length %g m, as a prism of %d faces", def->radius,
-             def->length, def->faces);
+    snprintf(mesh, sizeof mesh, "cylinder of radius %g m, length %g m", def->radius, def->length);
   if (def->kind == FEM_OBSTACLE_MESH) describe_mesh(def->mesh_path, def->box_cells, mesh, sizeof mesh);
   printf("  %-12s %s\n", def->name, mesh);
 }

@@ -48,12 +48,6 @@ static const SceneKey box_keys[] = {
 };
 static const SceneSection box = {.help = "everything within a box", .keys = box_keys};
 
-static const char *finish_cylinder(void *self, const char **key) {
-  const FemObstacleDef *obstacle = self;
-  *key = "faces";
-  return obstacle->faces % 2 == 0 ? NULL : "the number of faces must be even";
-}
-
 static const SceneKey cylinder_keys[] = {
     {"centre", SCENE_VECTOR, AT(FemObstacleDef, point), .unit = "m", .required = "[0, 0, 0]",
      .help = "at t = 0"},
@@ -62,13 +56,9 @@ static const SceneKey cylinder_keys[] = {
      .help = "of its section"},
     {"length", SCENE_NUMBER, AT(FemObstacleDef, length), .unit = "m", .range = "(0, inf)", .required = "0.5",
      .help = "along the axis; its ends are flat"},
-    {"faces", SCENE_INTEGER, AT(FemObstacleDef, faces), .range = "[8, 64]", .fallback = "48",
-     .help = "side faces, an even number, of the prism of the same section area that represents it; its "
-             "surface deviates by 0.14 % of the radius at 48, by 3.3/faces² in general"},
     {0},
 };
-static const SceneSection cylinder = {
-    .help = "everything within a cylinder", .keys = cylinder_keys, .finish = finish_cylinder};
+static const SceneSection cylinder = {.help = "everything within a cylinder", .keys = cylinder_keys};
 
 static const SceneKey obstacle_keys[] = {
     {"name", SCENE_LABEL, AT(FemObstacleDef, name), .required = "ground",
@@ -80,7 +70,7 @@ static const SceneKey obstacle_keys[] = {
     {"box", SCENE_SECTION, .section = &box, MARK(FemObstacleDef, kind, FEM_OBSTACLE_BOX),
      .help = "or a box without elements"},
     {"cylinder", SCENE_SECTION, .section = &cylinder, MARK(FemObstacleDef, kind, FEM_OBSTACLE_CYLINDER),
-     .help = "or a cylinder without elements"},
+     .help = "or a cylinder, exactly round"},
     {"velocity", SCENE_VECTOR, AT(FemObstacleDef, motion.velocity), .unit = "m/s", .fallback = "[0, 0, 0]",
      .excludes = "mesh motion", .help = "short for a `motion` of that velocity; for a mesh write `motion`"},
     {"mesh", SCENE_SECTION, .offset = offsetof(FemObstacleDef, mesh_path), .section = &app_scene_keys_mesh,

@@ -17,6 +17,7 @@ static const char WEIGHTS[] =
 static const struct {
   const char *path, *value, *advice;
 } removed[] = {
+    {"obstacles[].cylinder.faces", NULL, "remove it: a cylinder is exactly round"},
     {"contact.potential", "element", POTENTIAL},
     {"contact.potential", "pair", POTENTIAL},
     {"contact.potential", "linear", POTENTIAL},
@@ -31,11 +32,18 @@ static const struct {
      "remove it: contacts that stick no longer creep, so there is no speed of creep to choose"},
 };
 
+// Whether a path is that of the table, where [] stands for any place in a list.
+static bool is_path(const char *pattern, const char *path) {
+  for (; *pattern && *pattern == *path; pattern++, path++)
+    if (*pattern == '[') path += strspn(path + 1, "0123456789");
+  return *pattern == *path;
+}
+
 static const char *find(const char *path, const char *value) {
   for (size_t i = 0; i < sizeof removed / sizeof *removed; i++) {
     bool is_value = removed[i].value && value &&
                     (strcmp(removed[i].value, "*") == 0 || strcmp(removed[i].value, value) == 0);
-    if (strcmp(removed[i].path, path) == 0 && (is_value || (!removed[i].value && !value)))
+    if (is_path(removed[i].path, path) && (is_value || (!removed[i].value && !value)))
       return removed[i].advice;
   }
   return NULL;

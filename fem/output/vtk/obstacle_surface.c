@@ -10,6 +10,9 @@
 // Triangles along a quarter of a great circle. They lie 0.35 % of the radius within the ball at most.
 enum { BALL_ROWS = 16 };
 
+// Sides of the prism that is drawn of a cylinder; its surface is within 0.14 % of the radius.
+enum { CYLINDER_SIDES = 48 };
+
 // Half the edge of a half-space's square, over the diagonal of all meshes at rest.
 static const double SQUARE_SHARE = 1.5;
 
@@ -24,7 +27,7 @@ static int count_vertices(const FemObstacleDef *def) {
   case FEM_OBSTACLE_BOX:
     return 8 + 6; // corners, and the faces' centres
   case FEM_OBSTACLE_CYLINDER:
-    return 2 * def->faces + def->faces + 2;
+    return 2 * CYLINDER_SIDES + CYLINDER_SIDES + 2;
   }
   return 0;
 }
@@ -40,7 +43,7 @@ static int count_triangles(const FemObstacleDef *def) {
   case FEM_OBSTACLE_BOX:
     return 3 * 8; // one at each end of an edge in each of its faces: three a corner
   case FEM_OBSTACLE_CYLINDER:
-    return 3 * 2 * def->faces;
+    return 3 * 2 * CYLINDER_SIDES;
   }
   return 0;
 }
@@ -185,15 +188,15 @@ static void find_ring(Ring *ring, const ContactConvex *solid, int plane) {
 }
 
 // The quarter of a prism about its axis in which one of its sides lies, by the side's direction.
-static int quarter_of(const FemObstacleDef *def, Vec3 direction) {
-  int side = (int)lround(atan2(direction.y, direction.x) / (2 * M_PI / def->faces));
-  return 4 * ((side + def->faces) % def->faces) / def->faces;
+static int quarter_of(Vec3 direction) {
+  int side = (int)lround(atan2(direction.y, direction.x) / (2 * M_PI / CYLINDER_SIDES));
+  return 4 * ((side + CYLINDER_SIDES) % CYLINDER_SIDES) / CYLINDER_SIDES;
 }
 
 static int face_of(const FemObstacleDef *def, const ContactConvex *solid, int plane, Vec3 outward) {
   if (def->kind == FEM_OBSTACLE_BOX) return plane;
-  if (plane < def->faces) return quarter_of(def, solid->normals[plane]);
-  return 4 * (1 + plane - def->faces) + quarter_of(def, outward);
+  if (plane < CYLINDER_SIDES) return quarter_of(solid->normals[plane]);
+  return 4 * (1 + plane - CYLINDER_SIDES) + quarter_of(outward);
 }
 
 static void add_solid(Growth *growth, const ContactConvex *solid) {
@@ -220,12 +223,14 @@ static void add_obstacle(FemObstacleSurface *surface, const FemModel *model, con
   ContactConvex solid;
   ContactShape shape;
   fem_obstacle_shape(def, &shape, &solid);
+  bool has_axes = shape.kind == CONTACT_SHAPE_CONVEX || shape.kind == CONTACT_SHAPE_CYLINDER;
   growth.point = vec3_at(shape.point);
-  for (int k = 0; k < 3; k++)
-    growth.axes[k] = shape.kind == CONTACT_SHAPE_CONVEX ? vec3_at(shape.axes[k]) : space[k];
+  for (int k = 0; k < 3; k++) growth.axes[k] = has_axes ? vec3_at(shape.axes[k]) : space[k];
   if (shape.kind == CONTACT_SHAPE_HALFSPACE) add_square(&growth, model);
   if (shape.kind == CONTACT_SHAPE_BALL) add_ball(&growth);
-  if (shape.kind == CONTACT_SHAPE_CONVEX) add_solid(&growth, &solid);
+  if (shape.kind == CONTACT_SHAPE_CYLINDER)
+    contact_convex_make_prism(&solid, shape.radius, shape.half_length, CYLINDER_SIDES);
+  if (has_axes) add_solid(&growth, &solid);
 }
 
 static bool is_taken(const FemObstacleDef *def, bool are_moving) {

@@ -226,7 +226,8 @@ static const Wrong wrong[] = {
      "s.yaml:2:27: 'size' in bodies[0].mesh also needs 'file'"},
     {TIME BODY "obstacles: [{name: g, cylinder: {centre: [0, 0, 0], axis: [0, 0, 1], radius: 1, length: 1, "
                "faces: 9}}]\n",
-     "s.yaml:3:99: obstacles[0].cylinder: the number of faces must be even"},
+     "s.yaml:3:92: obstacles[0].cylinder.faces: there is no such key any more; remove it: a cylinder is "
+     "exactly round"},
     {"bodies: [{name: b, mesh: m.msh, material: {young: 1, poisson: 0, density: 1}}]\ntime: {end: 1, static: "
      "true}\ncontact: {rest: {}}\n",
      "s.yaml:3:11: a static scene is at rest always; remove 'rest' or time.static"},
