@@ -286,6 +286,7 @@ START_TEST(what_holds_a_sleeper_bears_what_lies_on_it) {
   ck_assert_near(last_in_history(folder, "probe_sole_force_z_N"), 9.81, 0.16);
   snprintf(path, sizeof path, "%s/history.csv", folder), unlink(path);
   snprintf(path, sizeof path, "%s/frames.pvd", folder), unlink(path);
+  snprintf(path, sizeof path, "%s/end.h5", folder), unlink(path);
   ck_assert_int_eq(rmdir(folder), 0);
   scene_close(&run);
 }
