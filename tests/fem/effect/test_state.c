@@ -34,6 +34,10 @@ static void displace(const Walk *walk, double time, int k, FemState *state) {
   free(u), free(v);
 }
 
+static void displace_under_trial(Walk *walk, int k) {
+  displace(walk, (STEPS + 0.25 * k) * STEP, STEPS + k, &walk->states[k]);
+}
+
 static void open_walk(Walk *walk, const char *setting) {
   scene_open(&walk->run, "everything", (const char *const[]){setting, NULL});
   const FemModel *model = &walk->run.model;
@@ -46,7 +50,7 @@ static void open_walk(Walk *walk, const char *setting) {
     ck_assert_ok(fem_system_renew(&walk->system, &walk->states[0]));
     ck_assert_ok(fem_system_accept(&walk->system, &walk->states[0], STEP));
   }
-  for (int k = 1; k < STATES; k++) displace(walk, (STEPS + 0.25 * k) * STEP, STEPS + k, &walk->states[k]);
+  for (int k = 1; k < STATES; k++) displace_under_trial(walk, k);
 }
 
 static void close_walk(Walk *walk) {
@@ -168,9 +172,12 @@ START_TEST(histories_that_are_copied_give_the_same) {
   Walk walk, other;
   open_walk(&walk, settings[_i]);
   open_walk(&other, settings[_i]);
+  for (int k = 0; k < STATES; k++) fem_state_destroy(&other.states[k]); // a state is of one system
   fem_system_destroy(&other.system);
   ck_assert_ok(fem_system_create(&other.system, &other.run.model));
   ck_assert_ok(fem_system_begin(&other.system, &walk.states[0], STEP));
+  for (int k = 0; k < STATES; k++) ck_assert_ok(fem_system_create_state(&other.system, &other.states[k]));
+  for (int k = 1; k < STATES; k++) displace_under_trial(&other, k);
   Values without = evaluate(&other, &other.states[1], 0);
   for (int i = 0; i < walk.system.effect_count; i++) {
     const FemEffectHistory *history = &walk.system.accepted.histories[i];
