@@ -72,5 +72,6 @@ Status app_inputs_record(const FemSceneDef *scene, const FemModel *model, Record
 bool app_inputs_differ(const Record *was, const Record *is) {
   RecordDifference difference;
   return !was || !is || record_differ(record_find(was, "meshes"), record_find(is, "meshes"), &difference) ||
-         record_differ(record_find(was, "weights"), record_find(is, "weights"), &difference);
+         record_differ(record_find(was, "weights"), record_find(is, "weights"), &difference) ||
+         record_differ(record_find(was, "start"), record_find(is, "start"), &difference);
 }

@@ -12,7 +12,8 @@
 // `weights` ("none": the model has no such file). STATUS_IO: weights that cannot be read; STATUS_MEMORY.
 Status app_inputs_record(const FemSceneDef *scene, const FemModel *model, Record *record);
 
-// Whether the digests of two records differ; of none, from everything.
+// Whether the digests of two records differ, that of an end state to start from (app/job/start.h) too; of
+// none, from everything.
 bool app_inputs_differ(const Record *was, const Record *is);
 
 #endif

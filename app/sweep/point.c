@@ -9,6 +9,7 @@
 #include "app/cli/format.h"
 #include "app/cli/versions.h"
 #include "app/job/inputs.h"
+#include "app/job/start.h"
 #include "app/scene/overlap.h"
 #include "app/scene/write.h"
 #include "base/files/digest.h"
@@ -134,14 +135,15 @@ static bool is_same_scene(const Record *manifest, const FemSceneDef *scene) {
   return is_same;
 }
 
-// Whether meshes and weights, as they are now, are those that the manifest has digests of. What cannot be
-// read now is another.
+// Whether meshes, weights and the end state to start from, as they are now, are those that the manifest has
+// digests of. What cannot be read now is another.
 static bool is_same_input(const Record *manifest, const FemSceneDef *scene) {
   FemModel model;
   Record *now = record_new();
   bool is_same = now && fem_model_create(&model, scene) == STATUS_OK;
   if (is_same) {
     is_same = app_inputs_record(scene, &model, now) == STATUS_OK &&
+              app_start_read(&model, NULL, now) == STATUS_OK &&
               !app_inputs_differ(record_find(manifest, "inputs"), now);
     fem_model_destroy(&model);
   }

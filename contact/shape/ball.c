@@ -218,14 +218,6 @@ static double overlap_with_gradient(const double tet[12], const double centre[3]
   return (double)sums.volume;
 }
 
-static double longest_edge(const double tet[12]) {
-  double longest = 0;
-  for (int v = 0; v < 4; v++)
-    for (int w = 0; w < v; w++)
-      longest = fmax(longest, vec3_length(vec3_sub(vec3_at(tet + 3 * v), vec3_at(tet + 3 * w))));
-  return longest;
-}
-
 // What a gradient is taken of, at a tetrahedron.
 typedef struct Question {
   const double *centre;
@@ -250,20 +242,9 @@ static double press_with_gradient(const Question *question, const double tet[12]
   return (double)(s * sums.depth);
 }
 
-static void differentiate(const Question *question, const double tet[12], double hessian[144]) {
-  static const double STEP = 1e-5; // not chosen: ε^⅓, where rounding is what a difference omits
-  double step = STEP * longest_edge(tet), moved[12], high[12], low[12], volume;
-  for (int c = 0; c < 12; c++) {
-    memcpy(moved, tet, sizeof moved);
-    moved[c] = tet[c] + step;
-    press_with_gradient(question, moved, &volume, high);
-    moved[c] = tet[c] - step;
-    press_with_gradient(question, moved, &volume, low);
-    for (int r = 0; r < 12; r++) hessian[12 * r + c] = (high[r] - low[r]) / (2 * step);
-  }
-  for (int r = 0; r < 12; r++)
-    for (int c = 0; c < r; c++)
-      hessian[12 * r + c] = hessian[12 * c + r] = 0.5 * (hessian[12 * r + c] + hessian[12 * c + r]);
+static void find_gradient(const void *question, const double tet[12], double gradient[12]) {
+  double volume;
+  press_with_gradient(question, tet, &volume, gradient);
 }
 
 void contact_ball_overlap(const double tet[12], const double centre[3], double radius, double *volume,
@@ -285,7 +266,7 @@ void contact_ball_press(const double tet[12], const double centre[3], double rad
   if (contact_ball_separation(tet, centre, radius) >= 0) return;
   *energy = press_with_gradient(&question, tet, volume, gradient);
   if (!hessian) return;
-  differentiate(&question, tet, hessian);
+  contact_definite_differentiate(find_gradient, &question, tet, hessian);
   double whole = fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9))) / 6;
   double bound = rest_volume / whole / radius * *volume; // with it no eigenvalue is negative but by rounding
   for (int r = 0; r < 12; r++) hessian[13 * r] += bound;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/shape/cylinder.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -141,7 +142,7 @@ static double turn_between(const Region *region, Vec3 p, Vec3 q, bool same_edge)
   double side = region->polygon->normal.z > 0 ? 1 : -1;
   double u = p.x - region->centre[0], v = p.y - region->centre[1], du = q.x - p.x, dv = q.y - p.y;
   double turn = side * atan2(u * dv - v * du, u * (u + du) + v * (v + dv));
-  if (turn < 0 && !same_edge && turn > -sqrt(1e-16)) return 0; // not chosen: the root of ε
+  if (turn < 0 && !same_edge && turn > -sqrt(DBL_EPSILON)) return 0;
   if (turn < 0) turn += 2 * M_PI;
   return side * turn;
 }
@@ -376,27 +377,16 @@ static double press_with_gradient(const ContactCylinder *cylinder, const double 
   return s * sums.depth;
 }
 
-static void differentiate(const ContactCylinder *cylinder, const double tet[12], double rest_volume,
-                          double hessian[144]) {
-  static const double STEP = 1e-5; // not chosen: ε^⅓, where rounding is what a difference omits
-  double longest = 0, moved[12], high[12], low[12], volume;
-  for (int k = 0; k < 6; k++) {
-    static const int ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-    Vec3 edge = vec3_sub(vec3_at(tet + 3 * ends[k][0]), vec3_at(tet + 3 * ends[k][1]));
-    longest = fmax(longest, vec3_length(edge));
-  }
-  double step = STEP * longest;
-  for (int c = 0; c < 12; c++) {
-    memcpy(moved, tet, sizeof moved);
-    moved[c] = tet[c] + step;
-    press_with_gradient(cylinder, moved, rest_volume, &volume, high);
-    moved[c] = tet[c] - step;
-    press_with_gradient(cylinder, moved, rest_volume, &volume, low);
-    for (int r = 0; r < 12; r++) hessian[12 * r + c] = (high[r] - low[r]) / (2 * step);
-  }
-  for (int r = 0; r < 12; r++)
-    for (int c = 0; c < r; c++)
-      hessian[12 * r + c] = hessian[12 * c + r] = 0.5 * (hessian[12 * r + c] + hessian[12 * c + r]);
+// What a gradient is taken of, at a tetrahedron.
+typedef struct Question {
+  const ContactCylinder *cylinder;
+  double rest_volume;
+} Question;
+
+static void find_gradient(const void *self, const double tet[12], double gradient[12]) {
+  const Question *question = self;
+  double volume;
+  press_with_gradient(question->cylinder, tet, question->rest_volume, &volume, gradient);
 }
 
 void contact_cylinder_press(const ContactCylinder *cylinder, const double tet[12], double rest_volume,
@@ -408,7 +398,7 @@ void contact_cylinder_press(const ContactCylinder *cylinder, const double tet[12
   if (contact_cylinder_separation(cylinder, tet) >= 0) return;
   *energy = press_with_gradient(cylinder, tet, rest_volume, volume, gradient);
   if (!hessian) return;
-  differentiate(cylinder, tet, rest_volume, hessian);
+  contact_definite_differentiate(find_gradient, &(Question){cylinder, rest_volume}, tet, hessian);
   double det = vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9));
   double bound = det == 0 ? 0 : 6 * rest_volume / fabs(det) / cylinder->round * *volume;
   for (int r = 0; r < 12 && !is_full; r++) hessian[13 * r] += bound;

@@ -6,7 +6,34 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "base/vec3.h"
+
 enum { N = CONTACT_DEFINITE_SIZE };
+
+static double longest_edge(const double tet[12]) {
+  double longest = 0;
+  for (int v = 0; v < 4; v++)
+    for (int w = 0; w < v; w++)
+      longest = fmax(longest, vec3_length(vec3_sub(vec3_at(tet + 3 * v), vec3_at(tet + 3 * w))));
+  return longest;
+}
+
+void contact_definite_differentiate(ContactDefiniteGradient *gradient, const void *self, const double tet[12],
+                                    double matrix[144]) {
+  static const double STEP = 1e-5; // not chosen: ε^⅓, where rounding is what a difference omits
+  double step = STEP * longest_edge(tet), moved[12], high[12], low[12];
+  for (int c = 0; c < N; c++) {
+    memcpy(moved, tet, sizeof moved);
+    moved[c] = tet[c] + step;
+    gradient(self, moved, high);
+    moved[c] = tet[c] - step;
+    gradient(self, moved, low);
+    for (int r = 0; r < N; r++) matrix[N * r + c] = (high[r] - low[r]) / (2 * step);
+  }
+  for (int r = 0; r < N; r++)
+    for (int c = 0; c < r; c++)
+      matrix[N * r + c] = matrix[N * c + r] = 0.5 * (matrix[N * r + c] + matrix[N * c + r]);
+}
 
 static double largest_diagonal(const double matrix[144]) {
   double largest = 0;

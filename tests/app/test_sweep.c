@@ -283,6 +283,30 @@ START_TEST(a_changed_mesh_or_changed_weights_run_again) {
 }
 END_TEST
 
+// Of the run that the scene starts from; its folder is seen from the scene.
+START_TEST(a_changed_end_state_runs_again) {
+  static const char scene[] =
+      "time: {end: 0.002}\nbodies:\n"
+      "  - {name: a, mesh: {box: {size: [1, 1, 1], cells: 1}}, material: {law: neo_hookean, young: 1e5, "
+      "poisson: 0.3, density: 1000}}\n";
+  char path[128], first[128];
+  snprintf(first, sizeof first, "%s/first.yaml", folder);
+  snprintf(path, sizeof path, "%s/scene.yaml", folder);
+  FileWriter writer;
+  ck_assert_ok(file_begin(&writer, first));
+  fputs(scene, writer.stream);
+  ck_assert_ok(file_commit(&writer));
+  change("cp first.yaml scene.yaml && echo 'start: first' >> scene.yaml");
+  change(TETLAP_PROGRAM " run first.yaml -o first -q");
+  ck_assert_int_eq(sweep_scene(path, "-V bodies[0].material.young=1e5"), 0);
+  ck_assert_int_eq(sweep_scene(path, "-V bodies[0].material.young=1e5"), 0);
+  ck_assert(says("1 finished, 0 to continue, 0 new"));
+  change(TETLAP_PROGRAM " run first.yaml -o first -q --set time.end=0.003");
+  ck_assert_int_eq(sweep_scene(path, "-V bodies[0].material.young=1e5"), 0);
+  ck_assert(says("0 finished, 0 to continue, 1 new"));
+}
+END_TEST
+
 // Paths are relative to the scene. The names are those of compare.
 START_TEST(weights_files_have_the_names_of_models) {
   static const char scene[] =
@@ -469,6 +493,7 @@ int main(void) {
   tcase_add_test(cases, a_repeated_run_that_fails_is_told_in_its_row);
   tcase_add_test(cases, what_is_finished_is_kept_and_what_has_changed_runs_again);
   tcase_add_test(cases, a_changed_mesh_or_changed_weights_run_again);
+  tcase_add_test(cases, a_changed_end_state_runs_again);
   tcase_add_test(cases, other_keys_have_other_folders);
   tcase_add_test(cases, weights_files_have_the_names_of_models);
   tcase_add_test(cases, a_table_of_another_format_is_refused_and_kept);
