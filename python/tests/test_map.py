@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import textwrap
+import threading
 import time
 import unittest
 import unittest.mock
@@ -62,6 +63,7 @@ class Maps(InFolder):
             sim.state()  # as a map begins: the integrator anew
             np.testing.assert_array_equal(press(sim, PARAMETERS[3])["points"], many[3]["points"])
         self.assertGreater(np.abs(np.diff(many["points"], axis=0)).max(), 1e-6)
+        self.assertTrue((many["force"][:, 2] > 0).all(), "the block stands on the floor")
 
     def test_items_may_be_scenes_or_give_them(self):
         def height(sim, _):
@@ -76,13 +78,16 @@ class Maps(InFolder):
         self.assertEqual(len(tetlap.map([SCENE], height, set={"time.end": 0.1})), 1)
 
     def test_callbacks_of_one_item_do_not_meet_the_next(self):
+        times = []
+
         def watched(sim, p):
-            times = []
+            begin = len(times)
             sim.on_step(lambda it: times.append(it.time))
             press(sim, p)
-            return {"steps": len(times), "first": times[0]}
+            return {"steps": len(times) - begin}
 
         results = tetlap.map(PARAMETERS[:1] * 3, watched, scene=SCENE, processes=1)
+        self.assertGreater(results["steps"][0], 0)
         self.assertEqual(len(set(results["steps"].tolist())), 1)
 
     def test_a_failed_item_is_kept_apart_and_told(self):
@@ -198,6 +203,41 @@ class Ends(InFolder):
         results = tetlap.Results(self.folder)
         self.assertEqual(len(results) + results.waiting, 6)
         self.assertTrue(set(results.index) <= {0, 1})
+
+    def test_a_row_that_the_stop_cut_short_does_not_count(self):
+        entered = threading.Event()
+
+        def endure(sim, k):
+            if k == 0:
+                entered.wait()
+                sys.exit(3)
+            entered.set()
+            try:
+                while True:
+                    sim.restore(begin := sim.state())
+                    sim.advance(0.01)
+                    sim.restore(begin)
+            except tetlap.RunError:
+                return {"k": k}
+
+        with self.assertRaises(SystemExit):
+            tetlap.map(range(2), endure, self.folder, scene=SCENE, processes=2)
+        results = tetlap.Results(self.folder)
+        self.assertEqual((len(results), results.waiting, results.failures), (0, 2, []))
+
+    def test_after_a_kill_in_the_middle_of_a_line_or_of_growing(self):
+        def fail(_, k):
+            if k == 1:
+                raise ArithmeticError("not this one")
+            return {"k": k}
+
+        with self.assertLogs("tetlap", "WARNING"):
+            tetlap.map(range(2), fail, self.folder, scene=SCENE)
+        (self.folder / "failures.jsonl").write_text('{"index": 1, "ki')
+        np.save(self.folder / "status.npy", np.array([1, 2, 0], np.uint8))
+        results = tetlap.map(range(2), fail, self.folder, scene=SCENE)
+        self.assertEqual((results.index.tolist(), [failure.index for failure in results.failures]), ([0], [1]))
+        self.assertIn("does not say why", results.failures[0].message)
 
     def test_a_function_that_exits_ends_the_map(self):
         def leave(sim, k):

@@ -132,6 +132,7 @@ class _Worker(threading.Thread):
         try:
             self._prepare(item)
             row = as_row(self._function(self._simulation, item))
+            self._refuse_if_stopped()  # a function that goes on when its run ends would return what it had so far
         except Exception as error:
             self._close()
             return None, error
@@ -146,10 +147,13 @@ class _Worker(threading.Thread):
         else:
             self._simulation = self._scenes.open(item)
             self._begin = self._simulation.state()
-        if self._is_stopped:  # while it was opened
-            raise RunError("the map was stopped", _INTERRUPTED, None)
+        self._refuse_if_stopped()  # while it was opened
         if self._scenes.is_shared:
             self._simulation.restore(self._begin)
+
+    def _refuse_if_stopped(self):
+        if self._is_stopped:
+            raise RunError("the map was stopped", _INTERRUPTED, None)
 
     def _close(self):
         simulation, self._simulation, self._begin = self._simulation, None, None

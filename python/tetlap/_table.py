@@ -67,7 +67,7 @@ def _read_about(directory):
 
 
 def _read_failures(directory, status):
-    """Those of items whose status says so; a line that is not whole, which a kill may leave at the end, is left out."""
+    """Of every item whose status says so. A line that is not whole, which a kill may leave, is nobody's."""
     found = {}
     path = directory / "failures.jsonl"
     for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
@@ -75,9 +75,8 @@ def _read_failures(directory, status):
             failure = Failure(**json.loads(line))
         except (ValueError, TypeError):
             continue
-        if failure.index < len(status) and status[failure.index] == _FAILED:
-            found[failure.index] = failure
-    return [found[index] for index in sorted(found)]
+        found[failure.index] = failure
+    return [found.get(index, Failure(index, "Error", f"{path} does not say why")) for index in np.flatnonzero(status == _FAILED).tolist()]
 
 
 def _empty(shape, dtype):
@@ -131,7 +130,7 @@ class Table:
         self.about = about
         self._write_about()  # before all else: a folder with other files and without it is somebody else's
         self._grow(keys)
-        self.status = np.lib.format.open_memmap(self._directory / "status.npy", "r+")
+        self.status = np.lib.format.open_memmap(self._directory / "status.npy", "r+")[: len(keys)]  # longer, if a kill stopped _grow
         self._fields = {name: np.lib.format.open_memmap(self._directory / f"{name}.npy", "r+") for name in about["fields"]}
 
     def _check(self, about, keys, origin):
