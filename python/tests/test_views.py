@@ -99,6 +99,7 @@ class Views(unittest.TestCase):
         self.assertIn("a<b", "".join(shown.itertext()))
         self.assertIn("0.25", "".join(shown.itertext()))
 
+
 class Help(unittest.TestCase):
     def test_every_public_name_is_described_and_in_the_list_of_the_package(self):
         for name in tetlap.__all__:

@@ -17,7 +17,7 @@ Runs are processes of their own, by the program. A scene is a file or a dict wit
     Simulation                  a run that Python steps, reads, pushes on, branches
     map, Results                many of these side by side; what they gave, as arrays
     compare                     one scene with several overlap models, yours too
-    gradient                    exact derivatives of a static scene by its parameters
+    gradient                    exact derivatives of a run by its scene's parameters
     tetlap.torch.run            the same scene as a differentiable function of PyTorch tensors
     poses                       overlap volume and wrench of many rigid poses of a body
 
