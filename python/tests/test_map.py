@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Many runs side by side, and the folder of arrays that they fill."""
 
+import functools
 import json
 import logging
 import os
@@ -264,6 +265,17 @@ class Refusals(InFolder):
             with self.assertRaisesRegex(ValueError, words):
                 tetlap.map(items, f, self.folder, **{"scene": SCENE, **arguments})
         self.assertEqual((self.folder / "map.json").read_bytes(), before)
+
+    def test_arguments_of_a_partial_are_of_the_function(self):
+        def scaled(factor, sim, p, unit="m"):
+            return {"depth": factor * p}
+
+        tetlap.map([1.0], functools.partial(scaled, 2, unit="mm"), self.folder, scene=SCENE)
+        again = tetlap.map([1.0, 2.0], functools.partial(scaled, 2, unit="mm"), self.folder, scene=SCENE)
+        self.assertEqual(again["depth"].tolist(), [2, 4])
+        for other in functools.partial(scaled, 3, unit="mm"), functools.partial(scaled, 2), scaled:
+            with self.assertRaisesRegex(ValueError, "another function"):
+                tetlap.map([1.0], other, self.folder, scene=SCENE)
 
     def test_a_mesh_that_has_changed_is_another(self):
         mesh = self.folder.with_name("a.msh")

@@ -7,6 +7,7 @@ from the same function of the program (app/sweep/crew.h)."""
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import inspect
 import json
@@ -37,9 +38,21 @@ def _digest(*texts):
     return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:32]
 
 
+def _plain_texts(values):
+    """Of numbers, text, lists, dicts and arrays; other values, which have no text that lasts, by their class."""
+    texts = []
+    for value in values:
+        try:
+            texts.append(scene_text(value))
+        except TypeError:
+            texts.append(type(value).__qualname__)
+    return texts
+
+
 def _function_text(function):
     """What says that a function is the same: its source, or its code where there is no source."""
-    function = getattr(function, "func", function)  # of functools.partial
+    if isinstance(function, functools.partial):
+        return f"{_function_text(function.func)} {_plain_texts([*function.args, function.keywords])}"
     if not inspect.isroutine(function) and not inspect.isclass(function):
         function = type(function)
     try:
