@@ -174,9 +174,9 @@ class Ends(InFolder):
     def begin(self):
         child = subprocess.Popen([sys.executable, "-c", textwrap.dedent(ENDLESS), str(self.folder), str(SCENE)], text=True,
                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        for end in child.stdout.close, child.stderr.close, child.wait, child.kill:  # the last first
+            self.addCleanup(end)
         programs = [int(child.stdout.readline()) for _ in range(2)]
-        self.addCleanup(child.stdout.close)
-        self.addCleanup(child.stderr.close)
         return child, programs
 
     def assert_ended(self, programs):
@@ -187,7 +187,8 @@ class Ends(InFolder):
 
     def test_ctrl_c_ends_all_and_leaves_whole_rows(self):
         child, programs = self.begin()
-        while tetlap.Results(self.folder).waiting > 4:  # until the two that ended are written
+        end = time.monotonic() + 30
+        while tetlap.Results(self.folder).waiting > 4 and time.monotonic() < end:  # until the two that ended are written
             time.sleep(0.05)
         child.send_signal(signal.SIGINT)
         self.assertEqual(child.wait(30), -signal.SIGINT)
