@@ -177,7 +177,7 @@ class Run:
             except (Error, OSError):
                 pass
         summary = self.summary or {}
-        wanted = ("end_time_s", "steps", "newton_iterations", "wall_s", "contact_force_max")
+        wanted = ("end_time", "steps", "wall_s", "contact_force_max")  # docs/summary.md
         rows = [("outcome", self.outcome or "goes on"), ("frames", len(self.frames))]
         return _views.table_html(f"Run {self.directory}", rows + [(name, _views.digits(summary[name])) for name in wanted if name in summary])
 
