@@ -2,6 +2,7 @@
 #include "app/gradient/parameter.h"
 
 #include <ctype.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -84,7 +85,8 @@ static bool matches(const char *key, const char *pattern, int numbers[MAX_NUMBER
     }
     char *end;
     if (!isdigit((unsigned char)*key)) return false;
-    numbers[count++] = (int)strtol(key, &end, 10);
+    long number = strtol(key, &end, 10);
+    numbers[count++] = number < INT_MAX ? (int)number : INT_MAX;
     key = end;
   }
   return *key == 0;
@@ -138,7 +140,7 @@ static Status fail_parameter(const char *key) {
                      app_gradient_keys);
 }
 
-// "bodies.NAME.": `rest` is what follows, which begins behind the last known name that fits.
+// The number of NAME in "bodies.NAME.…"; `rest` is what follows the name, which ends at the first dot.
 static Status find_owner(const FemSceneDef *scene, const char *key, const char *list, int begin, int end,
                          int *number, const char **rest) {
   const char *name = key + strlen(list);

@@ -93,7 +93,7 @@ static Status solve(Adjoint *adjoint, double *residual) {
   double whole = sqrt(fem_solver_dot(adjoint->right, adjoint->right, n));
   *residual = 0;
   memset(adjoint->lambda, 0, (size_t)n * sizeof(double));
-  if (!(whole > 0)) return STATUS_OK;
+  if (whole == 0) return STATUS_OK;
   memcpy(adjoint->force, adjoint->right, (size_t)n * sizeof(double));
   for (int k = 0; k < MAX_REFINEMENTS; k++) {
     TRY(fem_equilibrium_solve(equilibrium, adjoint->force, adjoint->step));
@@ -103,7 +103,7 @@ static Status solve(Adjoint *adjoint, double *residual) {
     *residual = sqrt(fem_solver_dot(adjoint->force, adjoint->force, n)) / whole;
     if (*residual <= RESIDUAL) break;
   }
-  return STATUS_OK;
+  return isfinite(*residual) ? STATUS_OK : status_fail(STATUS_SOLVER, "the adjoint is not a number");
 }
 
 // How far K λ is from the difference of forces along λ.

@@ -157,6 +157,14 @@ static Status balance(Replay *replay, int k) {
   return status_fail(STATUS_SOLVER, "the replay's step to t = %.9g s cannot be balanced", time);
 }
 
+// A failure of a step, with its time; nothing is tried again.
+static Status end_step(Status status, double time) {
+  if (status != STATUS_RETRY) return status;
+  char why[512];
+  snprintf(why, sizeof why, "%s", status_message());
+  return status_fail(STATUS_SOLVER, "the replay's step to t = %.9g s: %s", time, why);
+}
+
 static Status go_forwards(Replay *replay) {
   size_t n = (size_t)replay->n;
   FemSystem *system = &replay->system;
@@ -165,13 +173,7 @@ static Status go_forwards(Replay *replay) {
   for (int k = 1; k < replay->steps->count; k++) {
     double *u = replay->u + n * (size_t)k, *v = replay->v + n * (size_t)k;
     for (size_t i = 0; i < n; i++) u[i] = u[i - n] + (t[k] - t[k - 1]) * v[i - n];
-    Status status = balance(replay, k);
-    if (status == STATUS_RETRY) {
-      char why[512];
-      snprintf(why, sizeof why, "%s", status_message());
-      return status_fail(STATUS_SOLVER, "the replay's step to t = %.9g s: %s", t[k], why);
-    }
-    TRY(status);
+    TRY(end_step(balance(replay, k), t[k]));
     fem_system_scatter(system, t[k], u, v, &replay->state);
     TRY(fem_system_accept(system, &replay->state, k + 1 < replay->steps->count ? t[k + 1] - t[k] : 0));
   }
@@ -206,6 +208,9 @@ static Status solve_step(Replay *replay, int g, int k, const double *slope, doub
     left += (replay->right[i] - replay->force[i]) * (replay->right[i] - replay->force[i]);
     whole += replay->right[i] * replay->right[i];
   }
+  if (!isfinite(left) || !isfinite(whole))
+    return status_fail(STATUS_SOLVER, "the adjoint of the step to t = %.9g s is not a number",
+                       replay->steps->times[k]);
   if (whole > 0) *residual = fmax(*residual, sqrt(left / whole));
   for (int i = 0; i < replay->n; i++) {
     double s = mass_of(replay, i) * carried(replay, replay->beta, g, k, i);
@@ -314,7 +319,8 @@ static void add_start(Replay *replay, FemGradient *gradient) {
 static Status replay_and_return(Replay *replay, FemGradient *gradient) {
   TRY(go_forwards(replay));
   gradient->unbalanced = replay->worst;
-  for (int k = replay->steps->count - 1; k > 0; k--) TRY(go_back_to(replay, k, gradient));
+  for (int k = replay->steps->count - 1; k > 0; k--)
+    TRY(end_step(go_back_to(replay, k, gradient), replay->steps->times[k]));
   add_start(replay, gradient);
   return STATUS_OK;
 }

@@ -30,8 +30,8 @@ void fem_motion_steps_destroy(FemMotionSteps *steps);            // also of a ze
 
 // STATUS_INPUT: what cannot be differentiated in this scene; the message says what and why.
 Status fem_motion_check(const FemModel *model, const FemGradientDef *def);
-// STATUS_SOLVER: a step of the replay cannot be balanced; the message says which. Destroy the gradient also
-// after a failure.
+// STATUS_SOLVER: a step of the replay cannot be balanced, or the adjoint has no solution there; the message
+// says which step. Destroy the gradient also after a failure.
 Status fem_motion_differentiate(FemGradient *gradient, const FemModel *model, const FemGradientDef *def,
                                 const FemMotionSteps *steps);
 
