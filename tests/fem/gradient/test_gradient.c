@@ -306,6 +306,7 @@ START_TEST(parameters_without_a_derivative_are_refused_by_name) {
   refuse(STATIC, NU, "", NULL, "bodies.block.material.fibre.modulus", "no fibres");
   refuse(STATIC, NU, load, NULL, "bodies.block.loads[0].force[2]", "loads[0] is zero");
   refuse(STATIC, NU, load, NULL, "bodies.block.loads[1].force[2]", "no loads[1]");
+  refuse(STATIC, NU, load, NULL, "bodies.block.loads[4294967296].force[2]", "no loads[2147483647]");
   refuse(STATIC, NU, load, NULL, "bodies.block.loads[0].traction[2]", "does not have this key");
   refuse(STATIC, NU, driven, NULL, "bodies.block.driven[1].velocity[2]", "no driven[1]");
   refuse(STATIC, NU, driven, NULL, "bodies.block.driven[0].amplitude[2]", "does not oscillate");
