@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parameters of a static scene: which there are, their values, and which of them do not act.
+// Parameters of a scene: which there are, their values, and which of them do not act.
 #ifndef TETLAP_FEM_GRADIENT_PARAMETER_H
 #define TETLAP_FEM_GRADIENT_PARAMETER_H
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Derivatives of a static scene's quantities by its parameters, by `tetlap gradient`."""
+"""Derivatives of what a scene ends with by its parameters, by `tetlap gradient`."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Overlap volumes, and whole static runs, as differentiable functions of PyTorch tensors.
+"""Overlap volumes, and whole runs, as differentiable functions of PyTorch tensors.
 
     V = tetlap.torch.overlap(x)      x (…, 2, 4, 3) on the CPU, V (…)
     q = tetlap.torch.run(scene, {"bodies.block.material.young": young}, ["force:block:z"])
@@ -112,7 +112,7 @@ def _check_parameters(parameters):
 
 
 def run(scene, parameters, of, *, set=None):
-    """The quantities `of` (a list as of tetlap.gradient) of a static scene without friction, a tensor (of) in float64.
+    """The quantities `of` (a list as of tetlap.gradient) at the end of a scene's run, a tensor (of) in float64.
 
     parameters: {key of the scene: tensor of one number}; they replace the scene's values. Differentiable once by all of them. A
     contact stiffness that the scene does not give follows E and ν.
