@@ -252,7 +252,7 @@ static void rate_contact(FemChange *change, const FemTangent *tangent, const Fem
 }
 
 static Status rate_choice(FemChange *change, FemVaried *varied, const FemTangent *tangent, int body,
-                          FemConstant constant) {
+                          FemParameterKind constant) {
   double *rates;
   int parties;
   Status status = fem_varied_derive_stiffness(varied, body, constant, &rates, &parties);
@@ -265,8 +265,9 @@ static Status rate_choice(FemChange *change, FemVaried *varied, const FemTangent
 }
 
 static Status change_material(FemChange *change, FemVaried *varied, const FemTangent *tangent,
-                              const FemParameter *parameter, FemConstant constant, bool follows) {
-  bool is_elastic = constant == FEM_CONSTANT_YOUNG || constant == FEM_CONSTANT_POISSON;
+                              const FemParameter *parameter, bool follows) {
+  FemParameterKind constant = parameter->kind;
+  bool is_elastic = constant == FEM_PARAMETER_YOUNG || constant == FEM_PARAMETER_POISSON;
   TRY(fem_varied_derive(varied, parameter->body, constant, parameter->row, tangent->state, change->force,
                         &change->elastic));
   if (!follows || !is_elastic || !tangent->contact) return STATUS_OK;
@@ -309,21 +310,11 @@ Status fem_change_add_contact(FemChange *change, const FemTangent *tangent, int 
 
 static Status find(FemChange *change, FemVaried *varied, const FemTangent *tangent,
                    const FemParameter *parameter, bool follows) {
-  static const FemConstant constants[] = {[FEM_PARAMETER_YOUNG] = FEM_CONSTANT_YOUNG,
-                                          [FEM_PARAMETER_POISSON] = FEM_CONSTANT_POISSON,
-                                          [FEM_PARAMETER_MOONEY] = FEM_CONSTANT_MOONEY,
-                                          [FEM_PARAMETER_OGDEN_EXPONENT] = FEM_CONSTANT_OGDEN_EXPONENT,
-                                          [FEM_PARAMETER_OGDEN_SHARE] = FEM_CONSTANT_OGDEN_SHARE,
-                                          [FEM_PARAMETER_FIBRE] = FEM_CONSTANT_FIBRE};
   double by[3] = {0, 0, 0};
+  if (fem_parameter_is_of_material(parameter))
+    return change_material(change, varied, tangent, parameter, follows);
+  if (fem_parameter_is_of_motion(parameter)) return move(change, tangent, parameter);
   switch (parameter->kind) {
-  case FEM_PARAMETER_YOUNG:
-  case FEM_PARAMETER_POISSON:
-  case FEM_PARAMETER_MOONEY:
-  case FEM_PARAMETER_OGDEN_EXPONENT:
-  case FEM_PARAMETER_OGDEN_SHARE:
-  case FEM_PARAMETER_FIBRE:
-    return change_material(change, varied, tangent, parameter, constants[parameter->kind], follows);
   case FEM_PARAMETER_DENSITY:
     weigh_body(change, tangent, parameter->body);
     break;
@@ -333,12 +324,6 @@ static Status find(FemChange *change, FemVaried *varied, const FemTangent *tange
     break;
   case FEM_PARAMETER_LOAD:
     return press(change, tangent, parameter);
-  case FEM_PARAMETER_VELOCITY:
-  case FEM_PARAMETER_AMPLITUDE:
-  case FEM_PARAMETER_FREQUENCY:
-  case FEM_PARAMETER_SPIN:
-  case FEM_PARAMETER_TABLE:
-    return move(change, tangent, parameter);
   case FEM_PARAMETER_PLACE:
     place(change, tangent, parameter);
     break;
@@ -346,8 +331,7 @@ static Status find(FemChange *change, FemVaried *varied, const FemTangent *tange
   case FEM_PARAMETER_PAIR_STIFFNESS:
     rate_contact(change, tangent, parameter);
     break;
-  case FEM_PARAMETER_START:
-  case FEM_PARAMETER_MOTION_ALONE:
+  default: // acts in motions alone
     break;
   }
   return STATUS_OK;

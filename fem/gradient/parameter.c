@@ -4,8 +4,34 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "fem/gradient/varied.h"
 #include "fem/model/compliance.h"
+
+bool fem_parameter_is_of_material(const FemParameter *parameter) {
+  switch (parameter->kind) {
+  case FEM_PARAMETER_YOUNG:
+  case FEM_PARAMETER_POISSON:
+  case FEM_PARAMETER_MOONEY:
+  case FEM_PARAMETER_OGDEN_EXPONENT:
+  case FEM_PARAMETER_OGDEN_SHARE:
+  case FEM_PARAMETER_FIBRE:
+    return true;
+  default:
+    return false;
+  }
+}
+
+bool fem_parameter_is_of_motion(const FemParameter *parameter) {
+  switch (parameter->kind) {
+  case FEM_PARAMETER_VELOCITY:
+  case FEM_PARAMETER_AMPLITUDE:
+  case FEM_PARAMETER_FREQUENCY:
+  case FEM_PARAMETER_SPIN:
+  case FEM_PARAMETER_TABLE:
+    return true;
+  default:
+    return false;
+  }
+}
 
 static const FemContactDef *contact_of(const FemModel *model) {
   return &model->scene->contact;
@@ -88,6 +114,14 @@ static Status check_motion(const FemModel *model, const FemParameter *parameter)
   return STATUS_OK;
 }
 
+// There is no derivative by ν where elements begin to keep a part of λ only.
+static bool is_at_largest_ratio(const FemModelBody *body) {
+  static const double NEAR = 1e-9;
+  FemLame lame = fem_material_lame(&body->material);
+  double most = fem_model_largest_ratio(body) * lame.mu;
+  return isfinite(most) && fabs(lame.lambda - most) <= NEAR * most;
+}
+
 static Status check_material(const FemModel *model, const FemParameter *parameter) {
   const FemModelBody *body = &model->bodies[parameter->body];
   const FemMaterial *material = &body->material;
@@ -95,7 +129,7 @@ static Status check_material(const FemModel *model, const FemParameter *paramete
     return status_fail(STATUS_INPUT, "body '%s' has no fibres", body->name);
   if (parameter->kind == FEM_PARAMETER_OGDEN_SHARE && material->exponents[parameter->row] == 0)
     return status_fail(STATUS_INPUT, "body '%s': the exponent of this share is 0", body->name);
-  if (parameter->kind == FEM_PARAMETER_POISSON && fem_varied_is_kink(body))
+  if (parameter->kind == FEM_PARAMETER_POISSON && is_at_largest_ratio(body))
     return status_fail(
         STATUS_INPUT,
         "body '%s': there is no derivative by ν just here, where these elements begin to share "
@@ -105,22 +139,11 @@ static Status check_material(const FemModel *model, const FemParameter *paramete
 }
 
 Status fem_parameter_check(const FemModel *model, const FemParameter *parameter) {
+  if (fem_parameter_is_of_material(parameter)) return check_material(model, parameter);
+  if (fem_parameter_is_of_motion(parameter)) return check_motion(model, parameter);
   switch (parameter->kind) {
-  case FEM_PARAMETER_YOUNG:
-  case FEM_PARAMETER_POISSON:
-  case FEM_PARAMETER_MOONEY:
-  case FEM_PARAMETER_OGDEN_EXPONENT:
-  case FEM_PARAMETER_OGDEN_SHARE:
-  case FEM_PARAMETER_FIBRE:
-    return check_material(model, parameter);
   case FEM_PARAMETER_LOAD:
     return check_load(model, parameter);
-  case FEM_PARAMETER_VELOCITY:
-  case FEM_PARAMETER_AMPLITUDE:
-  case FEM_PARAMETER_FREQUENCY:
-  case FEM_PARAMETER_SPIN:
-  case FEM_PARAMETER_TABLE:
-    return check_motion(model, parameter);
   case FEM_PARAMETER_CONTACT_STIFFNESS:
     return check_stiffness(model);
   case FEM_PARAMETER_PAIR_STIFFNESS:
@@ -129,10 +152,7 @@ Status fem_parameter_check(const FemModel *model, const FemParameter *parameter)
     if (!model->scene->is_static)
       return status_fail(STATUS_INPUT, "there is no derivative by damping or viscosity in a motion");
     break;
-  case FEM_PARAMETER_DENSITY:
-  case FEM_PARAMETER_GRAVITY:
-  case FEM_PARAMETER_PLACE:
-  case FEM_PARAMETER_START:
+  default:
     break;
   }
   return STATUS_OK;
@@ -230,17 +250,13 @@ static double value_of_motion(const FemConstraintDef *motion, const FemParameter
 }
 
 double fem_parameter_value(const FemModel *model, const FemParameter *parameter) {
+  if (fem_parameter_is_of_motion(parameter))
+    return value_of_motion(fem_parameter_motion(model, parameter), parameter);
   switch (parameter->kind) {
   case FEM_PARAMETER_GRAVITY:
     return model->scene->has_gravity ? model->scene->gravity[parameter->component] : 0;
   case FEM_PARAMETER_LOAD:
     return value_of_load(&model->scene->bodies[parameter->body].loads[parameter->item], parameter->component);
-  case FEM_PARAMETER_VELOCITY:
-  case FEM_PARAMETER_AMPLITUDE:
-  case FEM_PARAMETER_FREQUENCY:
-  case FEM_PARAMETER_SPIN:
-  case FEM_PARAMETER_TABLE:
-    return value_of_motion(fem_parameter_motion(model, parameter), parameter);
   case FEM_PARAMETER_PLACE:
     return place_of(model, parameter);
   case FEM_PARAMETER_CONTACT_STIFFNESS:

@@ -35,6 +35,9 @@ typedef struct FemParameter {
   int row, component;
 } FemParameter;
 
+bool fem_parameter_is_of_material(const FemParameter *parameter); // acts by the elastic forces of its body
+bool fem_parameter_is_of_motion(const FemParameter *parameter);   // of a prescribed motion
+
 // STATUS_INPUT: the scene does not give it, or no derivative is known; the message says why.
 Status fem_parameter_check(const FemModel *model, const FemParameter *parameter);
 // Why a parameter that was checked changes nothing, so that its derivatives are 0; NULL: it may.

@@ -31,23 +31,11 @@ void fem_varied_destroy(FemVaried *varied) {
   *varied = (FemVaried){0};
 }
 
-static double largest_ratio(const FemModelBody *body) {
-  if (body->element == FEM_ELEMENT_NODAL) return FEM_MATERIAL_LARGEST_LOCAL_RATIO;
-  return body->element == FEM_ELEMENT_QUADRATIC ? FEM_QUADRATIC_LARGEST_RATIO : INFINITY;
-}
-
-bool fem_varied_is_kink(const FemModelBody *body) {
-  static const double NEAR = 1e-9;
-  FemLame lame = fem_material_lame(&body->material);
-  double ratio = largest_ratio(body);
-  return isfinite(ratio) && fabs(lame.lambda - ratio * lame.mu) <= NEAR * ratio * lame.mu;
-}
-
 // ∂λ/∂p, ∂μ/∂p by E and by ν.
-static FemLame lame_rate(const FemMaterial *material, FemConstant constant) {
+static FemLame lame_rate(const FemMaterial *material, FemParameterKind constant) {
   double young = material->young, nu = material->poisson;
   FemLame lame = fem_material_lame(material);
-  if (constant == FEM_CONSTANT_YOUNG) return (FemLame){lame.lambda / young, lame.mu / young};
+  if (constant == FEM_PARAMETER_YOUNG) return (FemLame){lame.lambda / young, lame.mu / young};
   double above = 1 + nu, below = 1 - 2 * nu;
   return (FemLame){young * (1 + 2 * nu * nu) / (above * above * below * below), -young / (2 * above * above)};
 }
@@ -57,10 +45,10 @@ static FemLame lame_along(FemLame from, double step, FemLame rate) {
 }
 
 // λ, μ and what elements keep of λ, along the tangent in E or ν.
-static void vary_lame(FemModelBody *to, const FemModelBody *from, FemConstant constant, double step) {
+static void vary_lame(FemModelBody *to, const FemModelBody *from, FemParameterKind constant, double step) {
   FemLame rate = lame_rate(&from->material, constant), local_rate = rate;
   FemLame lame = fem_material_lame(&from->material), local = fem_material_lame(&from->local);
-  double ratio = largest_ratio(from);
+  double ratio = fem_model_largest_ratio(from);
   if (lame.lambda > ratio * lame.mu) local_rate.lambda = ratio * rate.mu;
   to->material = fem_material_with_lame(&from->material, lame_along(lame, step, rate));
   to->local = fem_material_with_lame(&from->local, lame_along(local, step, local_rate));
@@ -73,46 +61,46 @@ static void vary_share(FemMaterial *to, const FemMaterial *from, int place, doub
   for (int p = 0; p < 3; p++) to->shares[p] = from->shares[p] + step * ((p == place) - from->shares[p] / sum);
 }
 
-static void vary(FemModelBody *to, const FemModelBody *from, FemConstant constant, int place, double step) {
+static void vary(FemModelBody *to, const FemModelBody *from, FemParameterKind constant, int place,
+                 double step) {
   *to = *from;
   switch (constant) {
-  case FEM_CONSTANT_YOUNG:
-  case FEM_CONSTANT_POISSON:
+  case FEM_PARAMETER_YOUNG:
+  case FEM_PARAMETER_POISSON:
     vary_lame(to, from, constant, step);
     return;
-  case FEM_CONSTANT_MOONEY:
+  case FEM_PARAMETER_MOONEY:
     to->local.mooney += step;
     break;
-  case FEM_CONSTANT_OGDEN_EXPONENT:
+  case FEM_PARAMETER_OGDEN_EXPONENT:
     to->local.exponents[place] += step;
     break;
-  case FEM_CONSTANT_OGDEN_SHARE:
+  case FEM_PARAMETER_OGDEN_SHARE:
     vary_share(&to->local, &from->local, place, step);
     break;
-  case FEM_CONSTANT_FIBRE:
+  default: // of the fibres
     to->local.fibre_stiffness += step;
     break;
   }
 }
 
 // So long that the change is not lost in rounding, and short beside where the law has a pole.
-static double step_of(const FemMaterial *material, FemConstant constant, int place) {
+static double step_of(const FemMaterial *material, FemParameterKind constant, int place) {
   static const double SHARE = 0.1, OF_EXPONENT = 5e-3;
   switch (constant) {
-  case FEM_CONSTANT_YOUNG:
+  case FEM_PARAMETER_YOUNG:
     return SHARE * material->young;
-  case FEM_CONSTANT_POISSON:
+  case FEM_PARAMETER_POISSON:
     return SHARE * (0.5 - material->poisson);
-  case FEM_CONSTANT_OGDEN_EXPONENT:
+  case FEM_PARAMETER_OGDEN_EXPONENT:
     return OF_EXPONENT * fabs(material->exponents[place]);
-  case FEM_CONSTANT_OGDEN_SHARE:
+  case FEM_PARAMETER_OGDEN_SHARE:
     return SHARE * (material->shares[0] + material->shares[1] + material->shares[2]);
-  case FEM_CONSTANT_FIBRE:
+  case FEM_PARAMETER_FIBRE:
     return SHARE * material->fibre_stiffness;
-  case FEM_CONSTANT_MOONEY:
-    break;
+  default: // mooney_rivlin's share
+    return SHARE;
   }
-  return SHARE;
 }
 
 // Adds `weight` times the elastic forces and energy.
@@ -132,8 +120,8 @@ static Status add_elastic(FemVaried *varied, const FemState *state, double weigh
   return STATUS_OK;
 }
 
-Status fem_varied_derive(FemVaried *varied, int body, FemConstant constant, int place, const FemState *state,
-                         double *force, double *energy) {
+Status fem_varied_derive(FemVaried *varied, int body, FemParameterKind constant, int place,
+                         const FemState *state, double *force, double *energy) {
   FemModelBody *own = &varied->model.bodies[body];
   const FemModelBody kept = *own;
   double step = step_of(&kept.material, constant, place);
@@ -153,12 +141,12 @@ static Status add_choice(FemVaried *varied, double weight, double *rates, FemCom
   return STATUS_OK;
 }
 
-Status fem_varied_derive_stiffness(FemVaried *varied, int body, FemConstant constant, double **rates,
+Status fem_varied_derive_stiffness(FemVaried *varied, int body, FemParameterKind constant, double **rates,
                                    int *party_count) {
   static const double SHARE = 1e-3;
   FemMaterial *material = &varied->model.bodies[body].material;
   const FemMaterial kept = *material;
-  bool is_young = constant == FEM_CONSTANT_YOUNG;
+  bool is_young = constant == FEM_PARAMETER_YOUNG;
   double *value = is_young ? &material->young : &material->poisson, middle = *value;
   double step = SHARE * (is_young ? middle : 0.5 - middle);
   *party_count = varied->model.body_count + fem_scene_shape_count(varied->model.scene);

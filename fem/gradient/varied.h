@@ -9,15 +9,7 @@
 #define TETLAP_FEM_GRADIENT_VARIED_H
 
 #include "fem/effect/system.h"
-
-typedef enum FemConstant {
-  FEM_CONSTANT_YOUNG,
-  FEM_CONSTANT_POISSON,
-  FEM_CONSTANT_MOONEY,
-  FEM_CONSTANT_OGDEN_EXPONENT,
-  FEM_CONSTANT_OGDEN_SHARE,
-  FEM_CONSTANT_FIBRE,
-} FemConstant;
+#include "fem/gradient/parameter.h"
 
 typedef struct FemVaried {
   FemModel model;               // borrows all but `bodies`
@@ -28,17 +20,14 @@ typedef struct FemVaried {
 Status fem_varied_create(FemVaried *varied, const FemModel *model);
 void fem_varied_destroy(FemVaried *varied); // also of a zeroed one
 
-// Whether there is no derivative by ν: nodal and quadratic elements divide λ otherwise below a certain ν.
-bool fem_varied_is_kink(const FemModelBody *body);
-
 // Adds the derivatives of the elastic forces [N] and energy [J] at a state by a constant of a body's
-// material; `place`: which of ogden's three.
-Status fem_varied_derive(FemVaried *varied, int body, FemConstant constant, int place, const FemState *state,
-                         double *force, double *energy);
+// material (fem_parameter_is_of_material); `place`: which of ogden's three.
+Status fem_varied_derive(FemVaried *varied, int body, FemParameterKind constant, int place,
+                         const FemState *state, double *force, double *energy);
 
 // ∂ ln κ/∂p of each body with each party (body_count, party_count; owned by the caller), p = E or ν of a
 // body.
-Status fem_varied_derive_stiffness(FemVaried *varied, int body, FemConstant constant, double **rates,
+Status fem_varied_derive_stiffness(FemVaried *varied, int body, FemParameterKind constant, double **rates,
                                    int *party_count);
 
 #endif

@@ -23,6 +23,11 @@ double fem_model_contact_stiffness(const FemModel *model) {
   return softest;
 }
 
+double fem_model_largest_ratio(const FemModelBody *body) {
+  if (body->element == FEM_ELEMENT_NODAL) return FEM_MATERIAL_LARGEST_LOCAL_RATIO;
+  return body->element == FEM_ELEMENT_QUADRATIC ? FEM_QUADRATIC_LARGEST_RATIO : INFINITY;
+}
+
 bool fem_model_has_linear_materials(const FemModel *model) {
   for (int b = 0; b < model->scene->body_count; b++)
     if (!fem_material_is_linear(&model->bodies[b].material)) return false;

@@ -87,6 +87,9 @@ double fem_model_fastest_wave(const FemModel *model);
 // E V ε², the energy of a strain in all bodies, twice if it were uniaxial [J].
 double fem_model_strain_energy(const FemModel *model, double strain);
 
+// The largest λ/μ that the body's elements resist with by themselves (`local`); infinite: any.
+double fem_model_largest_ratio(const FemModelBody *body);
+
 // Every body's law is linear, without fibres.
 bool fem_model_has_linear_materials(const FemModel *model);
 
