@@ -49,6 +49,7 @@ typedef struct AppComparisonModel {
   bool is_driven;     // has a run of its own; else audit only
   bool has_run;
   Status status;        // of its run
+  long long step_count; // likewise
   char message[512];    // why it failed
   OverlapModel overlap; // for the audit
   FemRunResult result;

@@ -16,8 +16,9 @@ const AppVerdictScene app_verdict_scenes[APP_VERDICT_SCENES] = {
     {"made", "unseen bodies", false}, {"hang", "thin, bent", false},
 };
 
-// Where a scene's run with the model may stop, over some seconds of `clip`'s.
-static const char WALL_S[] = "300", QUICK_WALL_S[] = "30";
+// Where a scene's run with the model is cut short: by steps over those of `clip`, of which 1.5 are allowed,
+// and where it does not step at all by the clock.
+static const char MOST_STEPS[] = "10", WALL_S[] = "600";
 
 static Status write_text(char *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 static Status write_text(char *text, const char *format, ...) {
@@ -69,7 +70,7 @@ static Status fill_scene(const AppVerdictPlan *plan, AppVerdictTask *task, Words
   TRY(write_text(task->texts[4], "%s/%s/%s", plan->directory, plan->name, scene->name));
   snprintf(file, sizeof file, "%s/compare.json", scene->name);
   add(words, "compare", task->texts[2], "--overlap", task->texts[3], "--reference", reference, "--audit", "2",
-      "--output", task->texts[4], "--wall", plan->is_quick ? QUICK_WALL_S : WALL_S, "--quiet", NULL);
+      "--output", task->texts[4], "--most-steps", MOST_STEPS, "--wall", WALL_S, "--quiet", NULL);
   return place(plan, task, file);
 }
 

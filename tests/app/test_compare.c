@@ -113,6 +113,32 @@ START_TEST(a_run_that_takes_too_long_is_cut_and_looks_it) {
 }
 END_TEST
 
+// A geo-small that moves two crossing edges takes four times the steps of clip.
+START_TEST(a_run_of_too_many_steps_is_cut_at_so_many_times_the_reference) {
+  static char text[1 << 16];
+  char folder[] = "/tmp/tetlap_compare_XXXXXX", words[512];
+  Record *list;
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  snprintf(words, sizeof words,
+           "compare " TETLAP_SOURCE_DIR
+           "/examples/verdict/edge.yaml --overlap geo-small,clip --reference clip "
+           "--most-steps 2 --audit 0 -t 1 -o %s --set output.vtu=false",
+           folder);
+  ck_assert_int_eq(print(words, text, sizeof text), 70);
+  snprintf(words, sizeof words, "%s/compare.json", folder);
+  ck_assert_ok(record_read(&list, words));
+  snprintf(words, sizeof words, "rm -r %s", folder);
+  ck_assert_int_eq(system(words), 0);
+  const Record *cut = record_at(list, 0), *reference = record_at(list, 1);
+  ck_assert_str_eq(record_find_text(cut, "outcome"), "cut short");
+  ck_assert_ptr_nonnull(strstr(record_find_text(cut, "message"), "cut short by --most-steps"));
+  ck_assert_str_eq(record_find_text(reference, "outcome"), "finished");
+  ck_assert_near(record_find_number(record_find(cut, "summary"), "steps"),
+                 2 * record_find_number(record_find(reference, "summary"), "steps") + 1, 0);
+  record_destroy(list);
+}
+END_TEST
+
 // A folder with two networks of one base name, and a scene of two blocks that names one of them.
 static char home[64], run_text[1 << 16];
 
@@ -270,6 +296,7 @@ int main(void) {
   tcase_add_test(cases, a_run_that_fails_before_it_touches_has_no_force_error);
   tcase_add_test(cases, audited_states_weigh_by_their_size);
   tcase_add_test(cases, a_run_that_takes_too_long_is_cut_and_looks_it);
+  tcase_add_test(cases, a_run_of_too_many_steps_is_cut_at_so_many_times_the_reference);
   tcase_add_test(cases, two_networks_of_one_base_name_share_neither_folder_nor_name);
   tcase_add_test(cases, a_weights_file_means_the_same_on_the_command_line_and_in_the_scene);
   tcase_add_test(cases, contact_with_obstacles_alone_has_no_audit);

@@ -25,7 +25,8 @@ typedef struct CompareOptions {
   int overlap_count, audited_count;
   const char *reference;
   int audit_every;
-  double wall_s; // a run that takes longer is cut short; 0: none is
+  double wall_s;     // a run that takes longer is cut short; 0: none is
+  double steps_over; // likewise one of more steps than so many times those of the reference; 0: none is
   int rank_count;
 } CompareOptions;
 
@@ -44,6 +45,10 @@ static const AppOption option_table[] = {
      .count_offset = offsetof(CompareOptions, audited_count)},
     {"wall", 0, "SECONDS", "Stop a model's run after this wall time (default: never)", 1, CLI_NUMBER,
      CLI_TO(CompareOptions, wall_s), 1e-3, 1e7},
+    {"most-steps", 0, "RATIO",
+     "Stop a model's run after RATIO times the steps of the reference, which then runs first (default: "
+     "never)",
+     1, CLI_NUMBER, CLI_TO(CompareOptions, steps_over), 1, 1e9},
     {"ranks", 0, "N", "Share each run among N processes of this machine (tetlap-mpi)", 1, CLI_INTEGER,
      CLI_TO(CompareOptions, rank_count), 1, RANKS_MOST},
     {.table = app_job_options, .offset = offsetof(CompareOptions, job)},
@@ -107,8 +112,10 @@ typedef struct Observer {
   const char *name;      // of the model
   double began_s;        // of its run
   double wall_s;         // its limit; 0: none
+  double most_steps;     // its limit; 0: none
+  long long step_count;  // of the run so far
   double tell_again_s;   // how long the run may last before its estimate is told anew; INFINITY: never
-  bool is_cut;           // by the limit
+  bool is_cut;           // by a limit
   double mark_s, mark_t; // where the last estimate was taken
 } Observer;
 
@@ -133,11 +140,21 @@ static Status check_wall(Observer *observer, const FemRunProgress *progress) {
                      progress->time, progress->end, observer->wall_s);
 }
 
+static Status check_steps(Observer *observer, const FemRunProgress *progress) {
+  if (!(observer->most_steps > 0 && (double)progress->step_count > observer->most_steps)) return STATUS_OK;
+  observer->is_cut = true;
+  return status_fail(STATUS_INTERRUPTED,
+                     "cut short by --most-steps: t = %g s of %g s was reached in %lld steps", progress->time,
+                     progress->end, progress->step_count);
+}
+
 static Status observe(void *self, const FemRunProgress *progress) {
   Observer *observer = self;
+  observer->step_count = progress->step_count;
   app_job_show_progress(&observer->progress, progress);
   tell_estimate(observer, progress);
   TRY(check_wall(observer, progress));
+  TRY(check_steps(observer, progress));
   return observer->comparison
              ? app_comparison_audit(observer->comparison, progress, &observer->step_in_contact)
              : STATUS_OK;
@@ -145,6 +162,13 @@ static Status observe(void *self, const FemRunProgress *progress) {
 
 // Estimates of runs shorter than this are not mended.
 static const double SHORT_RUN_S = 5;
+
+// 0 for the reference itself, and where that has not reached its end.
+static double limit_steps(const AppComparison *comparison, int m, const CompareOptions *options) {
+  const AppComparisonModel *reference = &comparison->models[comparison->reference];
+  if (m == comparison->reference || reference->status) return 0;
+  return options->steps_over * (double)reference->step_count;
+}
 
 // A run of one model, expected to take so long (0: unknown). What stops the whole comparison is returned; a
 // solver that gave up is kept as this model's result.
@@ -170,6 +194,7 @@ static Status run_model(AppComparison *comparison, int m, const CompareOptions *
       .name = model->name,
       .began_s = clock_wall_s(),
       .wall_s = options->wall_s,
+      .most_steps = limit_steps(comparison, m, options),
       .tell_again_s = expected_s > 0 ? 2 * fmax(expected_s, SHORT_RUN_S) : INFINITY};
   FemRunOptions run_options = {.directory = job.directory,
                                .stop = app_job_stop_flag(),
@@ -180,6 +205,7 @@ static Status run_model(AppComparison *comparison, int m, const CompareOptions *
   model->status = fem_run(&job.model, &run_options, &model->result);
   log_progress_end();
   model->has_run = true;
+  model->step_count = observer.step_count;
   if (model->status) snprintf(model->message, sizeof model->message, "%s", status_message());
   bool is_refused = app_job_folder_is_refused(model->status, &model->result);
   if (is_refused) app_job_folder_remove(job.directory, missing);
@@ -195,8 +221,10 @@ static Status run_model(AppComparison *comparison, int m, const CompareOptions *
   return status;
 }
 
-static int cheapest_waiting(const AppComparison *comparison) {
+static int choose_next(const AppComparison *comparison, const CompareOptions *options) {
   int best = -1;
+  if (options->steps_over > 0 && !comparison->models[comparison->reference].has_run)
+    return comparison->reference;
   for (int m = 0; m < comparison->model_count; m++) {
     const AppComparisonModel *model = &comparison->models[m];
     if (!model->is_driven || model->has_run) continue;
@@ -265,9 +293,9 @@ static Status prepare(AppComparison *comparison, CompareOptions *options) {
 
 static Status compare(AppComparison *comparison, CompareOptions *options) {
   TRY(prepare(comparison, options));
-  int first = cheapest_waiting(comparison);
+  int first = choose_next(comparison, options);
   log_info("%s runs first: the time of the others is estimated from its own", comparison->models[first].name);
-  for (int m = first; m >= 0; m = cheapest_waiting(comparison)) {
+  for (int m = first; m >= 0; m = choose_next(comparison, options)) {
     double expected_s = expect_time(comparison, first, m);
     announce_time(comparison, m, expected_s);
     TRY(run_model(comparison, m, options, expected_s));
