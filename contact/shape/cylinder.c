@@ -137,14 +137,27 @@ static void add_arc(Region *region, double turn, bool closes) {
   }
 }
 
-// From p to q the way round that the polygon goes. Of two edges that meet on the circle the arc is none.
+static bool holds_centre(const Region *region) {
+  const Polygon *polygon = region->polygon;
+  for (int i = 0; i < polygon->count; i++) {
+    Vec3 p = polygon->corners[i], q = polygon->corners[(i + 1) % polygon->count];
+    double left = (q.x - p.x) * (region->centre[1] - p.y) - (q.y - p.y) * (region->centre[0] - p.x);
+    if (!(left * polygon->normal.z > 0)) return false;
+  }
+  return region->square > 0;
+}
+
+// From p to q the way round that the polygon goes. More than half a turn is within a polygon that holds the
+// centre only. Of two edges that meet on the circle the arc is none.
 static double turn_between(const Region *region, Vec3 p, Vec3 q, bool same_edge) {
   double side = region->polygon->normal.z > 0 ? 1 : -1;
   double u = p.x - region->centre[0], v = p.y - region->centre[1], du = q.x - p.x, dv = q.y - p.y;
   double turn = side * atan2(u * dv - v * du, u * (u + du) + v * (v + dv));
-  if (turn < 0 && !same_edge && turn > -sqrt(DBL_EPSILON)) return 0;
-  if (turn < 0) turn += 2 * M_PI;
-  return side * turn;
+  bool is_short = fabs(turn) < M_PI / 2, is_long = is_short && holds_centre(region);
+  bool is_whole = is_long && same_edge;
+  if (is_short && !is_whole && turn < 0 && (!is_long || turn > -sqrt(DBL_EPSILON))) return 0;
+  if (turn < 0 || is_whole) turn += 2 * M_PI;
+  return side * fmin(turn, 2 * M_PI);
 }
 
 // The part of an edge with w ≥ 0; w along it is concave. False: there is none.
@@ -175,16 +188,6 @@ static void find_circle(Region *region) {
   centre.z = o.z - (n.x * (centre.x - o.x) + n.y * (centre.y - o.y)) / n.z;
   region->centre[0] = centre.x, region->centre[1] = centre.y;
   region->square = 2 * cylinder->round * excess(region->half, true, centre);
-}
-
-static bool holds_centre(const Region *region) {
-  const Polygon *polygon = region->polygon;
-  for (int i = 0; i < polygon->count; i++) {
-    Vec3 p = polygon->corners[i], q = polygon->corners[(i + 1) % polygon->count];
-    double left = (q.x - p.x) * (region->centre[1] - p.y) - (q.y - p.y) * (region->centre[0] - p.x);
-    if (!(left * polygon->normal.z > 0)) return false;
-  }
-  return region->square > 0;
 }
 
 // The corners of the part in turn, and the segments beyond their chords.

@@ -184,6 +184,41 @@ START_TEST(separation_is_the_distance_from_the_side_or_an_end) {
 }
 END_TEST
 
+// One tetrahedron of six, between radius 1 and 1.3, of the cell k of `count` round the axis and of length
+// `length`: its corners on the cylinder's side are the side's own.
+static void cell_of_ring(int count, int k, double length, int part, double tet[12]) {
+  static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+  int at[3] = {0, 0, 0};
+  for (int v = 0; v < 4; v++) {
+    double angle = 2 * M_PI * (k + at[0]) / count + 0.3, r = 1 + 0.3 * at[1];
+    tet[3 * v] = r * cos(angle), tet[3 * v + 1] = r * sin(angle), tet[3 * v + 2] = 0.1 + length * at[2];
+    if (v < 3) at[orders[part][v]] = 1;
+  }
+}
+
+// A ring round a drum, its corners on the drum: it holds of the drum what is between the chords and the arcs.
+START_TEST(a_ring_with_its_corners_on_the_side_holds_the_segments) {
+  const ContactCylinder cylinder = {1, 0.6, 1};
+  int count = 7 + 13 * _i;
+  double length = 0.03, angle = 2 * M_PI / count, segment = 0.5 * (angle - sin(angle)) * length, sum = 0;
+  for (int k = 0; k < count; k++) {
+    double cell = 0, energy = 0, volume, gradient[12], tet[12];
+    for (int part = 0; part < 6; part++) {
+      cell_of_ring(count, k, length, part, tet);
+      contact_cylinder_overlap(&cylinder, tet, &volume, gradient);
+      cell += volume;
+      for (int i = 0; i < 12; i++) ck_assert_double_lt(fabs(gradient[i]), 0.1);
+      energy += press(&cylinder, tet, whole_volume(tet), NULL);
+    }
+    ck_assert_near(cell, segment, 1e-7 * segment + 1e-15);
+    ck_assert_double_ge(energy, 0);
+    ck_assert_double_lt(energy, cell * angle * angle / 8);
+    sum += cell;
+  }
+  ck_assert_near(sum, count * segment, 1e-8 * count * segment + 1e-15);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("cylinder");
   tcase_add_loop_test(cases, a_cylinder_within_a_tetrahedron_is_whole, 0, 3);
@@ -191,6 +226,7 @@ int main(void) {
   tcase_add_loop_test(cases, forces_are_the_gradient_of_the_energy_and_of_the_volume, 0, 3);
   tcase_add_loop_test(cases, a_turn_about_the_axis_changes_nothing, 0, 3);
   tcase_add_test(cases, faces_along_the_axis_cost_no_digits);
+  tcase_add_loop_test(cases, a_ring_with_its_corners_on_the_side_holds_the_segments, 0, 8);
   tcase_add_loop_test(cases, the_matrix_is_the_gradient_of_the_force, 0, 3);
   tcase_add_test(cases, separation_is_the_distance_from_the_side_or_an_end);
   return suite_run("cylinder", cases, 60);
