@@ -17,6 +17,7 @@
 #include "dist/petsc.h"
 #include "dist/product.h"
 #include "dist/rows.h"
+#include "fem/sparse/vector.h"
 #include "fem/sparse/wear.h"
 
 typedef enum Kind { BOOMER, GAMG, MUMPS, BLOCKS, KIND_COUNT } Kind;
@@ -370,7 +371,7 @@ static Status set_up(DistSolver *solver) {
 
 static Status look_at(DistSolver *solver, const FemMatrix *matrix) {
   double least;
-  bool is_finite = fem_solver_is_finite(matrix->value, matrix->entry_count);
+  bool is_finite = fem_vector_is_finite(matrix->entry_count, matrix->value);
   TRY(ranks()->worst(is_finite ? STATUS_OK
                                : status_fail(STATUS_RETRY, "the condensed matrix is not finite")));
   dist_product_set(&solver->product, matrix);
@@ -463,7 +464,7 @@ static Status solve(void *self, const double *b, double *x) {
   status = ranks()->worst(status);
   solver->stats.solves++;
   solver->stats.solve_s += clock_wall_s() - began;
-  if (!status && !fem_solver_is_finite(x, solver->rows.size))
+  if (!status && !fem_vector_is_finite(solver->rows.size, x))
     return status_fail(STATUS_RETRY, "the solution of the condensed system is not finite");
   return status;
 }

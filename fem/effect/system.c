@@ -14,6 +14,7 @@
 #include "fem/model/formulas.h"
 #include "fem/scene/drive.h"
 #include "fem/sparse/solver.h"
+#include "fem/sparse/vector.h"
 
 // A message about the scene begins with its place there.
 static Status name_effect(Status status, const FemEffectOps *ops) {
@@ -192,6 +193,7 @@ void fem_system_scatter(const FemSystem *system, double time, const double *u, c
   const FemModel *model = system->model;
   const FemNumbering *numbering = &system->numbering;
   bool is_another = time != state->time;
+#pragma omp parallel for schedule(static) reduction(|| : is_another) if (numbering->count > FEM_VECTOR_LONG)
   for (int i = 0; i < numbering->count; i++) {
     int dof = numbering->dof_of_unknown[i];
     double position = model->rest[dof] + u[i];
@@ -217,7 +219,7 @@ void fem_system_gather(const FemSystem *system, const FemState *state, double *u
 static Status check_numbers(const FemSystem *system, const double *values, const char *what,
                             const char *from) {
   int count = 3 * system->model->vertex_count, i = 0;
-  if (fem_solver_is_finite(values, count)) return STATUS_OK;
+  if (fem_vector_is_finite(count, values)) return STATUS_OK;
   while (isfinite(values[i])) i++;
   return status_fail(STATUS_RETRY, "the %s vertex %d of body '%s' is not a number%s%s%s", what, i / 3,
                      fem_model_body_name(system->model, i / 3), from ? " (effect '" : "", from ? from : "",
@@ -290,7 +292,7 @@ Status fem_system_forces(FemSystem *system, const FemState *state) {
   } else {
     TRY(add_own_forces(system, state, PART_ALL));
   }
-  bool is_finite = fem_solver_is_finite(system->forces, 3 * system->model->vertex_count);
+  bool is_finite = fem_vector_is_finite(3 * system->model->vertex_count, system->forces);
   return is_finite ? STATUS_OK : blame_effect(system, state);
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "fem/sparse/vector.h"
 #include "fem/statics/equilibrium.h"
 
 enum { MAX_CORRECTIONS = 8, MAX_REFINEMENTS = 4 };
@@ -90,7 +91,7 @@ static Status settle(Adjoint *adjoint, double time, double *left) {
 static Status solve(Adjoint *adjoint, double *residual) {
   FemEquilibrium *equilibrium = &adjoint->equilibrium;
   int n = adjoint->count;
-  double whole = sqrt(fem_solver_dot(adjoint->right, adjoint->right, n));
+  double whole = sqrt(fem_vector_dot(n, adjoint->right, adjoint->right));
   *residual = 0;
   memset(adjoint->lambda, 0, (size_t)n * sizeof(double));
   if (whole == 0) return STATUS_OK;
@@ -100,7 +101,7 @@ static Status solve(Adjoint *adjoint, double *residual) {
     for (int i = 0; i < n; i++) adjoint->lambda[i] += adjoint->step[i];
     fem_matrix_multiply(&equilibrium->system->matrix, adjoint->lambda, adjoint->force);
     for (int i = 0; i < n; i++) adjoint->force[i] = adjoint->right[i] - adjoint->force[i];
-    *residual = sqrt(fem_solver_dot(adjoint->force, adjoint->force, n)) / whole;
+    *residual = sqrt(fem_vector_dot(n, adjoint->force, adjoint->force)) / whole;
     if (*residual <= RESIDUAL) break;
   }
   return isfinite(*residual) ? STATUS_OK : status_fail(STATUS_SOLVER, "the adjoint is not a number");

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "fem/sparse/vector.h"
 
 // Entries of a piece of a product: a quarter of a megabyte to be read. A matrix with fewer is one piece.
 enum { PIECE_SIZE = 32768 };
@@ -302,7 +303,7 @@ void fem_matrix_destroy(FemMatrix *matrix) {
 }
 
 void fem_matrix_zero(FemMatrix *matrix) {
-  memset(matrix->value, 0, (size_t)matrix->entry_count * sizeof *matrix->value);
+  fem_vector_fill(matrix->entry_count, 0, matrix->value);
 }
 
 // The row offset of the block (v, w), v < w, both with unknowns. The pattern must have it.

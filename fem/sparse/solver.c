@@ -2,7 +2,6 @@
 #include "fem/sparse/solver.h"
 
 #include <assert.h>
-#include <math.h>
 #include <omp.h>
 #include <stddef.h>
 
@@ -51,16 +50,4 @@ int fem_solver_use_threads(int threads) {
   int before = omp_get_max_threads();
   if (threads > 0 && threads != before) omp_set_num_threads(threads);
   return before;
-}
-
-double fem_solver_dot(const double *a, const double *b, int count) {
-  double sum = 0;
-  for (int i = 0; i < count; i++) sum += a[i] * b[i];
-  return sum;
-}
-
-bool fem_solver_is_finite(const double *values, int count) {
-  int is_bad = 0;
-  for (int i = 0; i < count; i++) is_bad |= !isfinite(values[i]);
-  return !is_bad;
 }

@@ -92,9 +92,5 @@ double fem_solver_tolerance(const FemSolverOps *ops, double said);
 // For the solvers: OpenMP's (and so OpenBLAS's) number of threads from here on, 0: as it is. Returns the
 // number before, to be given back the same way.
 int fem_solver_use_threads(int threads);
-// For the solvers: no NaN and no infinity among them.
-bool fem_solver_is_finite(const double *values, int count);
-// a · b
-double fem_solver_dot(const double *a, const double *b, int count);
 
 #endif

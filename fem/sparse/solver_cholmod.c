@@ -12,6 +12,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "fem/sparse/front/factor.h"
+#include "fem/sparse/vector.h"
 
 // Smaller graphs are ordered by minimum degree: nested dissection gains nothing there.
 enum { SMALL_GRAPH = 300 };
@@ -207,7 +208,7 @@ static Status analyse(void *self, const FemMatrix *pattern) {
 }
 
 static Status refactor(CholmodSolver *solver, const FemMatrix *matrix) {
-  if (!fem_solver_is_finite(matrix->value, matrix->entry_count))
+  if (!fem_vector_is_finite(matrix->entry_count, matrix->value))
     return status_fail(STATUS_RETRY, "the condensed matrix is not finite");
   return fem_front_factor_make(&solver->factor, matrix->value);
 }
@@ -239,7 +240,7 @@ static Status solve(void *self, const double *b, double *x) {
     fem_front_factor_solve(&solver->factor, b, x);
   solver->stats.solves++;
   solver->stats.solve_s += clock_wall_s() - began;
-  if (!fem_solver_is_finite(x, solver->tree.size))
+  if (!fem_vector_is_finite(solver->tree.size, x))
     return status_fail(STATUS_RETRY, "the solution of the condensed system is not finite");
   return STATUS_OK;
 }

@@ -14,6 +14,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "fem/sparse/vector.h"
 
 // A refactorisation keeps the old pivots. It is given up for new ones when the reciprocal pivot growth (1: no
 // growth of entries) has fallen to this share of what it was with pivots of its own.
@@ -190,7 +191,7 @@ static Status factor_anew(KluSolver *solver) {
 // With the old pivots if they still serve, else with new ones.
 static Status refactor(KluSolver *solver) {
   klu_common *common = &solver->common;
-  if (!fem_solver_is_finite(solver->value, solver->begin[2 * solver->size])) return fail_singular();
+  if (!fem_vector_is_finite(solver->begin[2 * solver->size], solver->value)) return fail_singular();
   if (solver->numeric &&
       klu_refactor(solver->begin, solver->row, solver->value, solver->symbolic, solver->numeric, common) &&
       common->status == KLU_OK &&
@@ -231,7 +232,7 @@ static Status solve(void *self, const double *b, double *x) {
     return fail_in(solver, "solution");
   solver->stats.solves++;
   solver->stats.solve_s += clock_wall_s() - began;
-  if (!fem_solver_is_finite(x, 2 * solver->size))
+  if (!fem_vector_is_finite(2 * solver->size, x))
     return status_fail(STATUS_RETRY, "the solution of the full system is not finite");
   return STATUS_OK;
 }

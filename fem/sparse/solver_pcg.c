@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "fem/sparse/cg.h"
+#include "fem/sparse/vector.h"
 
 enum { PARALLEL_SIZE = 4000, PCG_ITERATIONS = 2000 };
 
@@ -126,7 +127,7 @@ static Status factorise(void *self, const FemMatrix *stiffness, const FemMatrix 
   if (!solver->layout || stiffness->layout != solver->layout)
     return status_fail(STATUS_SOLVER, "pcg: this layout of the matrix has not been analysed");
   double began = clock_wall_s();
-  Status status = fem_solver_is_finite(stiffness->value, stiffness->entry_count)
+  Status status = fem_vector_is_finite(stiffness->entry_count, stiffness->value)
                       ? invert_blocks(solver, stiffness)
                       : status_fail(STATUS_RETRY, "the condensed matrix is not finite");
   if (status == STATUS_OK) {

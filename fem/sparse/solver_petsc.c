@@ -17,6 +17,7 @@
 #include "fem/sparse/cg.h"
 #include "fem/sparse/petsc_library.h"
 #include "fem/sparse/solver.h"
+#include "fem/sparse/vector.h"
 #include "fem/sparse/wear.h"
 
 // Iterations before a kept hierarchy is made anew at once, and before a new one gives up.
@@ -366,7 +367,7 @@ static bool has_positive_diagonal(const FemMatrix *matrix) {
 }
 
 static Status renew(PetscSolver *solver, const FemMatrix *matrix) {
-  if (!fem_solver_is_finite(matrix->value, matrix->entry_count))
+  if (!fem_vector_is_finite(matrix->entry_count, matrix->value))
     return status_fail(STATUS_RETRY, "the condensed matrix is not finite");
   if (!has_positive_diagonal(matrix))
     return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");
@@ -457,7 +458,7 @@ static Status solve(void *self, const double *b, double *x) {
   fem_solver_use_threads(before);
   solver->stats.solves++;
   solver->stats.solve_s += clock_wall_s() - began - (solver->stats.factorise_s - factorised_s);
-  if (!status && !fem_solver_is_finite(x, solver->size))
+  if (!status && !fem_vector_is_finite(solver->size, x))
     return status_fail(STATUS_RETRY, "the solution of the condensed system is not finite");
   return status;
 }

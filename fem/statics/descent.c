@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "fem/sparse/vector.h"
 
 // A full step is taken if this share of the first work is left, and a search ends there.
 static const double WORK_LEFT = 0.8, WORK_FOUND = 0.3;
@@ -64,7 +65,7 @@ static double longest_share(const Descent *descent) {
 static Status try_step(Descent *descent) {
   TRY(fem_equilibrium_factorise(descent->equilibrium, descent->time, descent->u, descent->shift));
   TRY(fem_equilibrium_solve(descent->equilibrium, descent->force, descent->step));
-  if (fem_solver_dot(descent->force, descent->step, descent->n) > 0) return STATUS_OK;
+  if (fem_vector_dot(descent->n, descent->force, descent->step) > 0) return STATUS_OK;
   return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");
 }
 
@@ -86,7 +87,7 @@ static Status find_step(Descent *descent) {
 static Status try_length(Descent *descent, double s, double *work) {
   for (int i = 0; i < descent->n; i++) descent->next[i] = descent->u[i] + s * descent->step[i];
   TRY(fem_equilibrium_forces(descent->equilibrium, descent->time, descent->next, descent->there));
-  *work = fem_solver_dot(descent->there, descent->step, descent->n);
+  *work = fem_vector_dot(descent->n, descent->there, descent->step);
   return STATUS_OK;
 }
 
@@ -123,7 +124,7 @@ static Status search(Descent *descent, double first, double most, double work) {
 static Status iterate(Descent *descent) {
   double length = 1, work;
   TRY(find_step(descent));
-  double first = fem_solver_dot(descent->force, descent->step, descent->n);
+  double first = fem_vector_dot(descent->n, descent->force, descent->step);
   TRY(try_longest(descent, &length, &work));
   if (work < -WORK_LEFT * first) TRY(search(descent, first, length, work));
   memcpy(descent->u, descent->next, (size_t)descent->n * sizeof *descent->u);

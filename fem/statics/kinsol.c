@@ -2,11 +2,11 @@
 #include "fem/statics/kinsol.h"
 
 #include <kinsol/kinsol.h>
-#include <nvector/nvector_serial.h>
 #include <stdio.h>
 
 #include "base/memory.h"
 #include "fem/time/newton/direct.h"
+#include "fem/time/nvector.h"
 #include "fem/time/sundials.h"
 
 enum { FULL_STEPS = 12, LINE_SEARCH_STEPS = 40, MESSAGE_SIZE = 512 };
@@ -66,7 +66,7 @@ static Status create(Newton *newton, double tolerance, double length) {
   if (!fem_sundials_create(&newton->context)) return status_no_memory("KINSOL");
   N_Vector *vectors[] = {&newton->u, &newton->u_scale, &newton->f_scale};
   for (int i = 0; i < 3; i++)
-    if (!(*vectors[i] = N_VNew_Serial(newton->n, newton->context))) return status_no_memory("KINSOL");
+    if (!(*vectors[i] = fem_nvector_create(newton->n, newton->context))) return status_no_memory("KINSOL");
   N_VConst(1 / length, newton->u_scale);
   N_VConst(1 / tolerance, newton->f_scale);
   TRY(fem_direct_create(&newton->direct, newton->context, newton, set_up, solve));

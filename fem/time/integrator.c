@@ -4,7 +4,6 @@
 #include <float.h>
 #include <ida/ida.h>
 #include <math.h>
-#include <nvector/nvector_serial.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -12,10 +11,12 @@
 #include "base/ranks.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/model/limits.h"
+#include "fem/sparse/vector.h"
 #include "fem/time/error_weights.h"
 #include "fem/time/newton/balance.h"
 #include "fem/time/newton/ida_solver.h"
 #include "fem/time/newton/newton.h"
+#include "fem/time/nvector.h"
 #include "fem/time/reason.h"
 #include "fem/time/sundials.h"
 
@@ -78,6 +79,7 @@ static int residual(sunrealtype time, N_Vector y, N_Vector y_dot, N_Vector r, vo
   scatter(integrator, time, y);
   int answer = fem_ida_solver_answer(&integrator->failure, fem_system_forces(system, integrator->state));
   if (answer != 0) return answer;
+#pragma omp parallel for schedule(static) if (n > FEM_VECTOR_LONG)
   for (int i = 0; i < n; i++) {
     kinematics[i] = u_dot[i] - v[i];
     balance[i] = masses[i] * v_dot[i] - system->forces[fem_part_dof(part, i)];
@@ -150,10 +152,8 @@ static Status create_vectors(FemIntegrator *integrator) {
   N_Vector *vectors[] = {&integrator->y, &integrator->y_dot, &integrator->interpolated,
                          &integrator->evaluated, &integrator->weights};
   for (int i = 0; i < 5; i++) {
-    *vectors[i] = N_VNew_Serial(2 * (sunindextype)integrator->n, integrator->context);
+    *vectors[i] = fem_nvector_create(2 * integrator->n, integrator->context); // IDA's own ones are clones
     if (!*vectors[i]) return status_no_memory("the integrator");
-    (*vectors[i])->ops->nvwrmsnorm = fem_newton_norm; // IDA's own vectors are clones
-    N_VConst(0, *vectors[i]);
   }
   return STATUS_OK;
 }
@@ -259,7 +259,7 @@ static Status find_derivatives(FemIntegrator *integrator, double time) {
   const double *u = values_of(integrator->y), *v = u + n;
   const double *masses = fem_ida_solver_masses(integrator->solver);
   double *u_dot = values_of(integrator->y_dot), *v_dot = u_dot + n;
-  if (ranks_any(!fem_solver_is_finite(u, 2 * n)))
+  if (ranks_any(!fem_vector_is_finite(2 * n, u)))
     return status_fail(STATUS_SOLVER, "at t = %g s: a position or velocity is not a number", time);
   scatter(integrator, time, integrator->y);
   TRY(fem_system_forces(system, integrator->state));
@@ -267,7 +267,7 @@ static Status find_derivatives(FemIntegrator *integrator, double time) {
     u_dot[i] = v[i];
     v_dot[i] = system->forces[fem_part_dof(part, i)] / masses[i];
   }
-  if (!ranks_any(!fem_solver_is_finite(v_dot, n))) return STATUS_OK;
+  if (!ranks_any(!fem_vector_is_finite(n, v_dot))) return STATUS_OK;
   return status_fail(STATUS_SOLVER, "at t = %g s: an acceleration is not a number", time);
 }
 

@@ -11,6 +11,7 @@
 #include "base/ranks.h"
 #include "fem/model/limits.h"
 #include "fem/sparse/cg.h"
+#include "fem/sparse/vector.h"
 #include "fem/time/newton/direct.h"
 
 // IDA asks for a matrix where c is beyond (1 + x)/(1 − x) of the matrix's, either way: three times. Its own
@@ -101,16 +102,16 @@ static Status solve_condensed(FemIdaSolver *solver, double *x) {
 // r₂ + (c M + D) r₁ for b = (r₁; r₂). u̇ = v is linear: once a whole step has been taken r₁ is rounding.
 static void condense(FemIdaSolver *solver, const double *b) {
   int n = solver->part->count;
-  double *right = solver->right, largest = 0;
-  for (int i = 0; i < n; i++) largest = fmax(largest, fabs(b[i]));
-  if (fem_part_most(largest) <= solver->rounding) {
-    memcpy(right, b + n, (size_t)n * sizeof *right);
+  double *right = solver->right;
+  if (fem_part_most(fem_vector_largest(n, b)) <= solver->rounding) {
+    fem_vector_copy(n, b + n, right);
     return;
   }
   if (solver->has_damping)
     multiply_damping(solver, b);
   else
-    for (int i = 0; i < n; i++) right[i] = 0;
+    fem_vector_fill(n, 0, right);
+#pragma omp parallel for schedule(static) if (n > FEM_VECTOR_LONG)
   for (int i = 0; i < n; i++) right[i] += b[n + i] + solver->c * solver->masses[i] * b[i];
 }
 
@@ -126,8 +127,8 @@ static void shift(FemIdaSolver *solver) {
   FemMatrix *matrix = &solver->system->matrix;
   double c = solver->c, before = solver->matrix_c;
   if (c == before) return;
-  for (int i = 0; solver->has_damping && i < matrix->entry_count; i++)
-    matrix->value[i] += (c - before) * solver->damping.value[i];
+  if (solver->has_damping)
+    fem_vector_sum(matrix->entry_count, 1, matrix->value, c - before, solver->damping.value, matrix->value);
   fem_matrix_add_mass(matrix, solver->system->model->mass, (c - before) * (c + before));
   solver->matrix_c = c;
 }
@@ -187,7 +188,7 @@ static Status solve(FemIdaSolver *solver, const double *b, double *x) {
     TRY(solve_following(solver, x));
   else
     TRY(solve_condensed(solver, x));
-  for (int i = 0; i < n; i++) x[n + i] = solver->c * x[i] - b[i];
+  fem_vector_sum(n, solver->c, x, -1, b, x + n);
   return STATUS_OK;
 }
 
@@ -293,10 +294,11 @@ static Status combine(FemIdaSolver *solver, const FemState *state) {
     TRY(fem_system_assemble(system, state, 1, 0, 0, &solver->stiffness));
     if (solver->has_damping) TRY(assemble_damping(solver, state));
   }
-  for (int i = 0; i < matrix->entry_count; i++) {
-    matrix->value[i] = solver->stiffness.value[i];
-    if (solver->has_damping) matrix->value[i] += solver->c * solver->damping.value[i];
-  }
+  if (solver->has_damping)
+    fem_vector_sum(matrix->entry_count, 1, solver->stiffness.value, solver->c, solver->damping.value,
+                   matrix->value);
+  else
+    fem_vector_copy(matrix->entry_count, solver->stiffness.value, matrix->value);
   fem_matrix_add_mass(matrix, system->model->mass, solver->c * solver->c);
   return STATUS_OK;
 }
@@ -311,8 +313,8 @@ Status fem_ida_solver_assemble(FemIdaSolver *solver, const FemState *state, doub
   TRY(fem_system_assemble(system, state, 1, 0, is_condensed ? c * c : 0, &system->matrix));
   // D is there already: its elements are not visited again for S.
   if (is_condensed && solver->has_damping)
-    for (int i = 0; i < system->matrix.entry_count; i++)
-      system->matrix.value[i] += c * solver->damping.value[i];
+    fem_vector_sum(system->matrix.entry_count, 1, system->matrix.value, c, solver->damping.value,
+                   system->matrix.value);
   return STATUS_OK;
 }
 

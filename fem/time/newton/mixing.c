@@ -2,10 +2,10 @@
 #include "fem/time/newton/mixing.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/memory.h"
 #include "fem/model/limits.h"
+#include "fem/sparse/vector.h"
 #include "fem/time/part.h"
 
 Status fem_mixing_create(FemMixing *mixing, int n) {
@@ -43,8 +43,8 @@ static void push(FemMixing *mixing, const double *d) {
   double *step = mixing->steps[1], *change = mixing->changes[1];
   mixing->steps[1] = mixing->steps[0];
   mixing->changes[1] = mixing->changes[0];
-  memcpy(step, mixing->taken, (size_t)mixing->n * sizeof *step);
-  for (int i = 0; i < mixing->n; i++) change[i] = d[i] - mixing->last[i];
+  fem_vector_copy(mixing->n, mixing->taken, step);
+  fem_vector_sum(mixing->n, 1, d, -1, mixing->last, change);
   mixing->steps[0] = step;
   mixing->changes[0] = change;
   if (mixing->count < FEM_MIXING_DEPTH) mixing->count++;
@@ -66,7 +66,7 @@ static void find_shares(const FemMixing *mixing, const double *weights, const do
 
 void fem_mixing_note(FemMixing *mixing, const double *d) {
   if (mixing->has_last) push(mixing, d);
-  memcpy(mixing->last, d, (size_t)mixing->n * sizeof *d);
+  fem_vector_copy(mixing->n, d, mixing->last);
 }
 
 void fem_mixing_mix(FemMixing *mixing, const double *weights, double *d) {
@@ -80,6 +80,6 @@ void fem_mixing_mix(FemMixing *mixing, const double *weights, double *d) {
 }
 
 void fem_mixing_take(FemMixing *mixing, double share, const double *step) {
-  for (int i = 0; i < mixing->n; i++) mixing->taken[i] = share * step[i];
+  fem_vector_scale(mixing->n, share, step, mixing->taken);
   mixing->has_last = true;
 }

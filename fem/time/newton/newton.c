@@ -2,31 +2,16 @@
 #include "fem/time/newton/newton.h"
 
 #include <math.h>
-#include <nvector/nvector_serial.h>
 
-#include "base/ranks.h"
 #include "fem/model/limits.h"
 #include "fem/sparse/solver.h"
+#include "fem/sparse/vector.h"
 #include "fem/time/part.h"
 #include "fem/time/sundials.h"
 
 // A matrix of an earlier iteration is renewed once the iterations that are left, at the rate of the last one,
 // are more: a new one costs about as much.
 static const double WORTH_A_MATRIX = 2;
-
-sunrealtype fem_newton_norm(N_Vector x_vector, N_Vector weights) {
-  enum { SUM_COUNT = 8 };
-  const double *x = N_VGetArrayPointer(x_vector), *w = N_VGetArrayPointer(weights);
-  sunindextype n = NV_LENGTH_S(x_vector), i = 0;
-  double sums[SUM_COUNT] = {0}, sum = 0;
-  for (; i + SUM_COUNT <= n; i += SUM_COUNT)
-    for (int k = 0; k < SUM_COUNT; k++) sums[k] += x[i + k] * w[i + k] * (x[i + k] * w[i + k]);
-  for (; i < n; i++) sum += x[i] * w[i] * (x[i] * w[i]);
-  for (int k = 0; k < SUM_COUNT; k++) sum += sums[k];
-  double all[2] = {sum, (double)n};
-  ranks()->sum(all, 2);
-  return sqrt(all[0] / all[1]);
-}
 
 static FemNewton *newton_of(SUNNonlinearSolver solver) {
   return solver->content;
@@ -118,7 +103,7 @@ static bool renew(Solve *solve) {
 static double slope_of_balance(const FemNewton *newton) {
   int n = newton->user.n;
   return fem_part_sum(
-      fem_solver_dot(N_VGetArrayPointer(newton->direction), N_VGetArrayPointer(newton->residual) + n, n));
+      fem_vector_dot(n, N_VGetArrayPointer(newton->direction), N_VGetArrayPointer(newton->residual) + n));
 }
 
 // g(0) along the direction. The condensed right-hand side is minus the condensed residual.
@@ -129,7 +114,7 @@ static void find_slope(Solve *solve) {
   solve->slope = balance;
   if (right)
     solve->slope =
-        -fem_part_sum(fem_solver_dot(N_VGetArrayPointer(newton->direction), right, newton->user.n));
+        -fem_part_sum(fem_vector_dot(newton->user.n, N_VGetArrayPointer(newton->direction), right));
   solve->settle = solve->slope - balance;
 }
 

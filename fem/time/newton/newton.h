@@ -65,9 +65,6 @@ typedef struct FemNewton {
   int current;       // iterations since the matrix or the step was changed: what IDA's test counts
 } FemNewton;
 
-// √(Σ (x_i w_i)² / n) over ranks, in eight sums: one would wait for each addition.
-sunrealtype fem_newton_norm(N_Vector x, N_Vector weights);
-
 // `like`: a vector of the size of y. A zeroed one, and one whose creation failed, can be destroyed.
 Status fem_newton_create(FemNewton *newton, const FemNewtonUser *user, N_Vector like, SUNContext context);
 void fem_newton_destroy(FemNewton *newton);
