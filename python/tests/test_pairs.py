@@ -42,6 +42,11 @@ class Pairs(unittest.TestCase):
         self.assertTrue((pairs["volume"][~touching] == 0).all())
         self.assertEqual(pairs["gradient"].shape, (COUNT, 2, 4, 3))
 
+    def test_the_rows_of_numbers_begin_at_whole_numbers(self):
+        pairs = tetlap.load_pairs(self.file, count=20)
+        for name in ("coordinates", "volume", "gradient"):
+            self.assertTrue(all(step % 8 == 0 for step in pairs[name].strides), name)  # else torch.tensor refuses the array
+
     def test_a_range_is_the_same_pairs(self):
         whole, part = tetlap.load_pairs(self.file), tetlap.load_pairs(self.file, first=990, count=20)
         self.assertTrue((whole[990:1010] == part).all())

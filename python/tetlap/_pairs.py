@@ -53,7 +53,8 @@ def load_pairs(file: str | os.PathLike, *, first: int = 0, count: int | None = N
         target = Path(folder, "pairs.npy")
         words = ["dataset", "export", file, "-o", target, "--first", first]
         _call(words if count is None else [*words, "--count", count])
-        return np.load(target)
+        packed = np.load(target)
+    return packed.astype(np.dtype(packed.dtype.descr, align=True))  # PyTorch takes no array whose rows begin between its numbers
 
 
 def _write_pairs(folder, data):
