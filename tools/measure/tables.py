@@ -2,8 +2,8 @@
 """The tables and pictures that tools/measure/all makes: what is run for each, and what is made of what it says.
 
 A Bench is commands whose standard output, one after the other, is handed to `shape`. A Runs is a list of whole runs of scenes, a row each;
-its columns are functions of the run's summary.json. `minutes` is about the processor time on one core. In a command {program} is the program,
-{folder} a folder for what it writes; `picture` is a file in that folder that replaces one of the manual.
+its columns are functions of the run's summary.json. `minutes` is about the processor time on one core. In a command {program} is the program, {python} a Python with NumPy (TETLAP_PYTHON, else
+python3), {folder} a folder for what it writes; `picture` is a file in that folder that replaces one of the manual.
 """
 import glob
 import json
@@ -198,6 +198,11 @@ TABLES = {
     "peaks": Runs(["scene", "`time.tolerance`"], [([name, tolerance], example(name), (f"time.tolerance={tolerance}",), ()) for name in ("01_drop", "03_spheres", "05_press", "10_incline", "13_dead_bounce")
                                                   for tolerance in ("1e-3", "1e-4", "1e-5")],
                   {"largest force [N]": value("contact_force_max", 4), "from the finest": peak_error, "`tolerance_over_depth`": peak_estimate}, 2),
+    "peers": Bench([command for name in ("lost", "pressed_deep") for command in
+                    (["{python}", "tools/measure/peers", "write", "calculix", f"benchmarks/scenes/{name}.yaml", "-o", f"{{folder}}/{name}", "--program", "{program}"],
+                     ["sh", "-c", f"cd {{folder}}/{name} && command -v ccx > ccx.log || exit 127; OMP_NUM_THREADS=1 ccx scene > ccx.log"])]
+                   + [["{python}", "tools/measure/peers", "read", "{folder}/lost", "{folder}/pressed_deep"]],
+                   lambda told: "\n".join(line for line in told.splitlines() if line.startswith("|")), 1, lacks=127),
     "drop": Runs(["c [Pa/m]", "tolerance"], [([stiffness, tolerance], "app/stress/scenes/drop.yaml", (f"contact.stiffness={stiffness}", f"time.tolerance={tolerance}"), ())
                                              for stiffness in ("1e6", "1e7", "1e8", "1e9", "1e10") for tolerance in ("1e-2", "1e-4", "1e-6")],
                  {"energy gain": value("energy_gain_relative"), "steps": COST["steps"], "taken back": HEALTH["taken back"], "processor time [s]": value("cpu_s", 3)}, 1),
