@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/search/candidates.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -14,6 +15,9 @@
 // Where the boxes of two bodies meet but the bodies may not, a margin of several steps of free motion is
 // tried, bounded so that the trial costs little more than a search.
 enum { WIDEST_TRIAL = CONTACT_STEPS_AHEAD };
+
+// Fewer are searched one after the other, each by all threads where it can be divided.
+enum { FEW_INTERFACES_COUNT = 4 };
 
 // The margin of self-contact as a share of the usual one: second neighbours in a mesh are always near, so a
 // wide margin would list them all.
@@ -44,18 +48,22 @@ Status contact_candidates_create(ContactCandidates *candidates, const ContactLay
   candidates->is_listed = memory_zeroed((size_t)layout->mesh.cell_count, 1);
   candidates->boxes = memory_zeroed((size_t)layout->def.body_count, sizeof *candidates->boxes);
   size_t parties = (size_t)layout->party_count;
+  candidates->found_count = layout->interface_count;
+  candidates->found = memory_zeroed((size_t)layout->interface_count, sizeof *candidates->found);
   candidates->is_left_out = memory_zeroed((size_t)layout->interface_count, sizeof *candidates->is_left_out);
   candidates->motions = memory_zeroed(parties, sizeof(ContactMotion));
   candidates->expected = memory_zeroed(parties, sizeof(ContactMotion));
   bool fits = candidates->reference && candidates->is_listed && candidates->boxes && candidates->motions &&
-              candidates->expected && candidates->is_left_out;
+              candidates->expected && candidates->is_left_out && candidates->found;
   return fits ? STATUS_OK : status_no_memory("the candidate lists");
 }
 
 void contact_candidates_destroy(ContactCandidates *candidates) {
   destroy_list(&candidates->list);
   destroy_list(&candidates->next);
-  contact_broad_destroy(&candidates->found);
+  for (int f = 0; candidates->found && f < candidates->found_count; f++)
+    contact_broad_destroy(&candidates->found[f].pairs);
+  memory_free(candidates->found);
   memory_free(candidates->reference);
   memory_free(candidates->is_listed);
   memory_free(candidates->boxes);
@@ -74,6 +82,7 @@ static void measure(ContactCandidates *candidates, const ContactLayout *layout, 
 static void expect_motions(ContactCandidates *candidates, const ContactLayout *layout, double time,
                            const double *velocities, double step) {
   const ContactSystemDef *def = &layout->def;
+#pragma omp parallel for schedule(static) if (def->vertex_count > 2048)
   for (int b = 0; b < def->body_count; b++) {
     ContactMotion *motion = &candidates->expected[b];
     *motion = contact_motion_of(velocities, NULL, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
@@ -123,6 +132,7 @@ static bool wants_search(const ContactCandidates *candidates, const ContactLayou
 
 static void bound_bodies(ContactCandidates *candidates, const ContactLayout *layout,
                          const double *positions) {
+#pragma omp parallel for schedule(static) if (layout->def.vertex_count > 2048)
   for (int b = 0; b < layout->def.body_count; b++) {
     double *box = candidates->boxes[b];
     for (int c = 0; c < 3; c++) box[c] = INFINITY, box[c + 3] = -INFINITY;
@@ -144,80 +154,112 @@ static double clearance(const ContactCandidates *candidates, const ContactLayout
   return contact_bounds_distance(candidates->boxes[interface->a], candidates->boxes[interface->b]);
 }
 
-static Status push(ContactCandidateList *list, ContactPair pair) {
-  if (!memory_reserve((void **)&list->pairs, &list->capacity, (size_t)list->count + 1, sizeof *list->pairs))
-    return status_no_memory("candidate pairs");
-  list->pairs[list->count++] = pair;
-  return STATUS_OK;
-}
-
 static ContactBroadSide side_of(const ContactLayout *layout, int body) {
   const ContactMesh *mesh = &layout->mesh;
   int begin = mesh->cell_begin[body], end = mesh->cell_begin[body + 1];
   return (ContactBroadSide){mesh->cells + begin, end - begin, begin};
 }
 
-static Status search_bodies(ContactCandidates *candidates, const ContactLayout *layout, int f,
-                            const double *positions, double margin) {
-  const ContactInterfaceDef *interface = &layout->interfaces[f];
+// A search at one place and time.
+typedef struct Search {
+  const ContactCandidates *candidates;
+  const ContactLayout *layout;
+  double time;
+  const double *positions;
+} Search;
+
+static Status search_bodies(const Search *search, const ContactInterfaceDef *interface, double margin,
+                            ContactPairList *pairs) {
+  const ContactLayout *layout = search->layout;
   ContactBroadSide a = side_of(layout, interface->a), b = side_of(layout, interface->b);
-  candidates->found.count = 0;
   if (interface->a == interface->b)
-    TRY(contact_self_append(&layout->self, &layout->def, &layout->mesh, interface->a, positions, margin,
-                            &candidates->found));
-  else
-    TRY(contact_broad_append(&candidates->found, &a, &b, positions, margin));
-  for (int k = 0; k < candidates->found.count; k++) {
-    const int *cells = candidates->found.pairs[k];
-    TRY(push(&candidates->next, (ContactPair){f, {cells[0], cells[1]}}));
-  }
-  return STATUS_OK;
+    return contact_self_append(&layout->self, &layout->def, &layout->mesh, interface->a, search->positions,
+                               margin, pairs);
+  return contact_broad_append(pairs, &a, &b, search->positions, margin);
 }
 
-static Status search_shape(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
-                           const double *positions, double margin) {
-  const ContactInterfaceDef *interface = &layout->interfaces[f];
+// The second cell of a pair is −1.
+static Status search_shape(const Search *search, const ContactInterfaceDef *interface, double margin,
+                           ContactPairList *pairs) {
+  const ContactLayout *layout = search->layout;
   const ContactShape *shape = &layout->def.shapes[interface->shape];
   const int *begin = layout->mesh.cell_begin;
   for (int i = begin[interface->a]; i < begin[interface->a + 1]; i++) {
     double x[12];
     if (!contact_mesh_leads(&layout->mesh, i)) continue;
-    contact_layout_gather_whole(layout, i, positions, x);
-    if (contact_shape_separation(shape, time, x, margin) <= margin)
-      TRY(push(&candidates->next, (ContactPair){f, {i, -1}}));
+    contact_layout_gather_whole(layout, i, search->positions, x);
+    if (!(contact_shape_separation(shape, search->time, x, margin) <= margin)) continue;
+    if (!memory_reserve((void **)&pairs->pairs, &pairs->capacity, (size_t)pairs->count + 1,
+                        sizeof *pairs->pairs))
+      return status_no_memory("candidate pairs");
+    int *pair = pairs->pairs[pairs->count++];
+    pair[0] = i, pair[1] = -1;
   }
   return STATUS_OK;
 }
 
-static Status search_with(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
-                          const double *positions, double margin) {
-  candidates->next.margins[f] = margin;
-  if (layout->interfaces[f].shape < 0) return search_bodies(candidates, layout, f, positions, margin);
-  return search_shape(candidates, layout, f, time, positions, margin);
+static Status search_with(const Search *search, int f, double margin, ContactFound *found) {
+  const ContactInterfaceDef *interface = &search->layout->interfaces[f];
+  found->margin = margin;
+  found->pairs.count = 0;
+  return interface->shape < 0 ? search_bodies(search, interface, margin, &found->pairs)
+                              : search_shape(search, interface, margin, &found->pairs);
 }
 
 // A margin wider than the layout's is kept only where it holds no pair.
-static Status search_interface(ContactCandidates *candidates, const ContactLayout *layout, int f, double time,
-                               const double *positions) {
+static Status search_interface(const Search *search, int f, ContactFound *found) {
+  const ContactLayout *layout = search->layout;
   const ContactInterfaceDef *interface = &layout->interfaces[f];
-  ContactCandidateList *next = &candidates->next;
-  int begin = next->begin[f] = next->count;
-  if (candidates->is_left_out[f]) return STATUS_OK;
-  if (interface->a == interface->b)
-    return search_with(candidates, layout, f, time, positions, SELF_MARGIN * layout->margin);
-  double distance = clearance(candidates, layout, interface, time, positions);
+  found->pairs.count = 0;
+  if (search->candidates->is_left_out[f]) return STATUS_OK;
+  if (interface->a == interface->b) return search_with(search, f, SELF_MARGIN * layout->margin, found);
+  double distance = clearance(search->candidates, layout, interface, search->time, search->positions);
   if (distance > layout->margin && isfinite(distance)) {
-    next->margins[f] = distance;
+    found->margin = distance;
     return STATUS_OK;
   }
-  double wide = fmin(CONTACT_STEPS_AHEAD * contact_motion_approach(candidates->expected, interface),
+  double wide = fmin(CONTACT_STEPS_AHEAD * contact_motion_approach(search->candidates->expected, interface),
                      WIDEST_TRIAL * layout->margin);
   if (wide > layout->margin) {
-    TRY(search_with(candidates, layout, f, time, positions, wide));
-    if (next->count == begin) return STATUS_OK;
-    next->count = begin;
+    TRY(search_with(search, f, wide, found));
+    if (found->pairs.count == 0) return STATUS_OK;
   }
-  return search_with(candidates, layout, f, time, positions, layout->margin);
+  return search_with(search, f, layout->margin, found);
+}
+
+// Interfaces are searched side by side. A message belongs to the thread that failed: this one searches the
+// first that failed again to have it.
+static Status search_interfaces(ContactCandidates *candidates, const Search *search) {
+  int count = search->layout->interface_count, first_failed = count;
+#pragma omp parallel for schedule(dynamic) reduction(min : first_failed) if (count > FEW_INTERFACES_COUNT)
+  for (int f = 0; f < count; f++) {
+    candidates->found[f].status = search_interface(search, f, &candidates->found[f]);
+    if (candidates->found[f].status && f < first_failed) first_failed = f;
+  }
+  if (first_failed == count) return STATUS_OK;
+  ContactFound *found = &candidates->found[first_failed];
+  TRY(search_interface(search, first_failed, found));
+  return status_fail(found->status, "the search for pairs in contact failed once and not again");
+}
+
+// The pairs of all interfaces, in their order.
+static Status collect_found(ContactCandidates *candidates, int interface_count) {
+  ContactCandidateList *next = &candidates->next;
+  size_t wanted = 0;
+  for (int f = 0; f < interface_count; f++) wanted += (size_t)candidates->found[f].pairs.count;
+  next->count = 0;
+  if (wanted > INT_MAX ||
+      !memory_reserve((void **)&next->pairs, &next->capacity, wanted, sizeof *next->pairs))
+    return status_no_memory("candidate pairs");
+  for (int f = 0; f < interface_count; f++) {
+    const ContactFound *found = &candidates->found[f];
+    next->begin[f] = next->count;
+    next->margins[f] = found->margin;
+    for (int k = 0; k < found->pairs.count; k++)
+      next->pairs[next->count++] = (ContactPair){f, {found->pairs.pairs[k][0], found->pairs.pairs[k][1]}};
+  }
+  next->begin[interface_count] = next->count;
+  return STATUS_OK;
 }
 
 void contact_candidates_list_cells(ContactCandidateList *list, unsigned char *is_listed) {
@@ -234,11 +276,10 @@ void contact_candidates_list_cells(ContactCandidateList *list, unsigned char *is
 // Fills `next`.
 static Status search_all(ContactCandidates *candidates, const ContactLayout *layout, double time,
                          const double *positions) {
-  candidates->next.count = 0;
+  Search search = {candidates, layout, time, positions};
   bound_bodies(candidates, layout, positions);
-  for (int f = 0; f < layout->interface_count; f++)
-    TRY(search_interface(candidates, layout, f, time, positions));
-  candidates->next.begin[layout->interface_count] = candidates->next.count;
+  TRY(search_interfaces(candidates, &search));
+  TRY(collect_found(candidates, layout->interface_count));
   contact_candidates_list_cells(&candidates->next, candidates->is_listed);
   return STATUS_OK;
 }

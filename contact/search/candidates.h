@@ -21,6 +21,13 @@ typedef struct ContactCandidateList {
   int cell_count;
 } ContactCandidateList;
 
+// What a search finds in one interface.
+typedef struct ContactFound {
+  ContactPairList pairs; // of cells, −1: a shape
+  double margin;
+  Status status;
+} ContactFound;
+
 typedef struct ContactCandidates {
   ContactCandidateList list;
   bool is_made;
@@ -33,7 +40,8 @@ typedef struct ContactCandidates {
   double time_left; // for which the list is expected to hold, at the speeds of the last update [s]
   // Scratch memory.
   ContactCandidateList next;
-  ContactPairList found;
+  ContactFound *found; // of each interface                       (found_count)
+  int found_count;
   unsigned char *is_listed; // 0 between calls                        (cell_count)
   double (*boxes)[6];       // of each body                                 (body_count)
   ContactMotion *motions;   // of each party since the search          (party_count)

@@ -36,6 +36,7 @@ void contact_near_destroy(ContactNear *near) {
   memory_free(near->blown);
   memory_free(near->boxes);
   memory_free(near->is_listed);
+  memory_free(near->is_kept);
   *near = (ContactNear){0};
 }
 
@@ -94,40 +95,48 @@ static void blow_up_cells(ContactNear *near, const ContactLayout *layout,
   }
 }
 
-// Of the portion's pairs those that nothing separates, behind the list's last.
-static void add_portion(ContactNear *near, const ContactPair *pairs, int count) {
-  enum { PORTION_SIZE = 64 };
+enum { PORTION_SIZE = 64 };
+
+// Marks the pairs of a portion that nothing separates.
+static void mark_portion(ContactNear *near, const ContactPair *pairs, int begin, int end) {
   double coordinates[24 * PORTION_SIZE];
   bool is_apart[PORTION_SIZE];
-  for (int begin = 0; begin < count; begin += PORTION_SIZE) {
-    int size = count - begin < PORTION_SIZE ? count - begin : PORTION_SIZE, asked = 0, from[PORTION_SIZE];
-    for (int k = 0; k < size; k++) {
-      const int *cells = pairs[begin + k].cells;
-      if (cells[1] >= 0 && contact_bounds_distance(near->boxes[cells[0]], near->boxes[cells[1]]) > 0)
-        continue;
-      for (int side = 0; side < 2 && cells[1] >= 0; side++)
-        memcpy(coordinates + 24 * (size_t)asked + 12 * side, near->blown[cells[side]], sizeof *near->blown);
-      from[asked] = begin + k;
-      if (cells[1] < 0) memset(coordinates + 24 * (size_t)asked, 0, 24 * sizeof(double)); // never apart
-      asked++;
-    }
-    overlap_separation_find(asked, coordinates, is_apart);
-    for (int k = 0; k < asked; k++)
-      if (!is_apart[k]) near->list.pairs[near->list.count++] = pairs[from[k]];
+  int asked = 0, from[PORTION_SIZE];
+  for (int k = begin; k < end; k++) {
+    const int *cells = pairs[k].cells;
+    bool is_of_shape = cells[1] < 0; // never apart
+    near->is_kept[k] = is_of_shape;
+    if (is_of_shape || contact_bounds_distance(near->boxes[cells[0]], near->boxes[cells[1]]) > 0) continue;
+    for (int side = 0; side < 2; side++)
+      memcpy(coordinates + 24 * (size_t)asked + 12 * side, near->blown[cells[side]], sizeof *near->blown);
+    from[asked++] = k;
+  }
+  overlap_separation_find(asked, coordinates, is_apart);
+  for (int k = 0; k < asked; k++) near->is_kept[from[k]] = !is_apart[k];
+}
+
+static void mark(ContactNear *near, const ContactCandidateList *candidates) {
+#pragma omp parallel for schedule(static) if (candidates->count > 512)
+  for (int begin = 0; begin < candidates->count; begin += PORTION_SIZE) {
+    int left = candidates->count - begin;
+    mark_portion(near, candidates->pairs, begin, begin + (left < PORTION_SIZE ? left : PORTION_SIZE));
   }
 }
 
 static Status make(ContactNear *near, const ContactLayout *layout, const ContactCandidateList *candidates,
                    double time, const double *positions) {
   ContactCandidateList *list = &near->list;
-  if (!memory_reserve((void **)&list->pairs, &list->capacity, (size_t)candidates->count, sizeof *list->pairs))
+  size_t count = (size_t)candidates->count;
+  if (!memory_reserve((void **)&list->pairs, &list->capacity, count, sizeof *list->pairs) ||
+      !memory_reserve((void **)&near->is_kept, &near->kept_capacity, count, sizeof *near->is_kept))
     return status_no_memory("candidate pairs");
   blow_up_cells(near, layout, candidates, positions);
+  mark(near, candidates);
   list->count = 0;
   for (int f = 0; f < layout->interface_count; f++) {
     list->begin[f] = list->count;
-    add_portion(near, candidates->pairs + candidates->begin[f],
-                candidates->begin[f + 1] - candidates->begin[f]);
+    for (int k = candidates->begin[f]; k < candidates->begin[f + 1]; k++)
+      if (near->is_kept[k]) list->pairs[list->count++] = candidates->pairs[k];
   }
   list->begin[layout->interface_count] = list->count;
   contact_candidates_list_cells(list, near->is_listed);

@@ -24,6 +24,8 @@ typedef struct ContactNear {
   double (*blown)[12];      // cells                                   (cell_count)
   double (*boxes)[6];       // of those                                (cell_count)
   unsigned char *is_listed; // 0 between calls                         (cell_count)
+  bool *is_kept;            // candidates                              (kept_capacity)
+  size_t kept_capacity;
 } ContactNear;
 
 Status contact_near_create(ContactNear *near, const ContactLayout *layout);

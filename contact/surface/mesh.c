@@ -225,7 +225,7 @@ void contact_mesh_destroy(ContactMesh *mesh) {
 
 void contact_mesh_place(const ContactMesh *mesh, const ContactSystemDef *def, double *positions) {
   int count = mesh->position_count - def->vertex_count;
-#pragma omp parallel for schedule(static) if (count > 4096)
+#pragma omp parallel for schedule(static) if (count > 1024)
   for (int u = 0; u < count; u++) {
     const ContactVirtual *virtual = &mesh->virtuals[u];
     const int *vertices = def->tets[virtual->tet];

@@ -29,6 +29,7 @@ enum { FEM_SOLVER_NAMES = FEM_SOLVER_BLOCK_JACOBI + 1 };
 
 typedef struct FemSolverStats {
   long long analyses, factorisations, failed_factorisations, solves, iterations;
+  long long orders;      // of elimination, made anew; fewer than analyses where they are kept
   long long hierarchies; // of multigrid, made anew; fewer than factorisations where they are kept
   double analyse_s, factorise_s, solve_s; // wall [s]
   double factor_entries;

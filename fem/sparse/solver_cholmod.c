@@ -7,6 +7,7 @@
 // number, and the last bits of a factor with it. On one thread it would have one core.
 #include "fem/sparse/solver.h"
 
+#include <string.h>
 #include <suitesparse/cholmod.h>
 
 #include "base/clock.h"
@@ -20,11 +21,19 @@ enum { SMALL_GRAPH = 300 };
 // CHOLMOD's own 4, 16 and 48 columns of small fronts that are joined, for nodes of three.
 static const size_t FEW_COLUMNS[3] = {2, 6, 16};
 
+// The order of elimination of an earlier pattern is kept as long as the factor that it gives has at most this
+// much more entries than the one it was made for. Contacts come and go, and few of them change the best
+// order.
+static const double KEPT_FILL = 1.05;
+
 typedef struct CholmodSolver {
   cholmod_common common;
   FemFrontTree tree;
   FemFrontFactor factor;
-  long long layout; // that was analysed; 0: none
+  int *order;        // of the vertices, kept                                (order_count)
+  int order_count;   // 0: none
+  double order_fill; // entries of the factor that it was made for
+  long long layout;  // that was analysed; 0: none
   bool is_factorised;
   bool is_rough; // solutions serve as a preconditioner only
   FemSolverStats stats;
@@ -71,6 +80,7 @@ static void destroy(void *self) {
   if (!solver) return;
   forget_factor(solver);
   cholmod_finish(&solver->common);
+  memory_free(solver->order);
   memory_free(solver);
 }
 
@@ -158,19 +168,50 @@ static Status order_graph(CholmodSolver *solver, VertexGraph *graph) {
   return is_ok ? STATUS_OK : fail_in(solver, "ordering");
 }
 
-static Status order(CholmodSolver *solver, const FemMatrix *matrix, VertexGraph *graph) {
+static Status make_graph(const FemMatrix *matrix, VertexGraph *graph) {
   int *node_of_unknown = memory_zeroed((size_t)matrix->size, sizeof *node_of_unknown);
   if (!node_of_unknown) return status_no_memory("the graph of the matrix");
   Status status = build_graph(matrix, graph, node_of_unknown);
   memory_free(node_of_unknown);
-  TRY(status);
-  return order_graph(solver, graph);
+  return status;
 }
 
-static Status build_tree(CholmodSolver *solver, const FemMatrix *matrix, const VertexGraph *graph) {
+static Status find_fronts(CholmodSolver *solver, const VertexGraph *graph, cholmod_factor **symbolic) {
   cholmod_sparse pattern = view(graph);
-  cholmod_factor *symbolic = cholmod_analyze_p(&pattern, graph->order, NULL, 0, &solver->common);
-  if (!symbolic) return fail_in(solver, "analysis");
+  *symbolic = cholmod_analyze_p(&pattern, graph->order, NULL, 0, &solver->common);
+  return *symbolic ? STATUS_OK : fail_in(solver, "analysis");
+}
+
+// NULL: there is no order of that many vertices, or it is no longer good.
+static Status find_fronts_by_kept(CholmodSolver *solver, VertexGraph *graph, cholmod_factor **symbolic) {
+  *symbolic = NULL;
+  if (solver->order_count == 0 || solver->order_count != graph->node_count) return STATUS_OK;
+  memcpy(graph->order, solver->order, (size_t)graph->node_count * sizeof *graph->order);
+  TRY(find_fronts(solver, graph, symbolic));
+  if (!(solver->common.lnz <= KEPT_FILL * solver->order_fill)) cholmod_free_factor(symbolic, &solver->common);
+  return STATUS_OK;
+}
+
+static Status find_fronts_anew(CholmodSolver *solver, VertexGraph *graph, cholmod_factor **symbolic) {
+  TRY(order_graph(solver, graph));
+  TRY(find_fronts(solver, graph, symbolic));
+  memory_free(solver->order);
+  solver->order_count = 0;
+  solver->order = memory_copy(graph->order, (size_t)graph->node_count, sizeof *graph->order);
+  if (!solver->order) {
+    cholmod_free_factor(symbolic, &solver->common);
+    return status_no_memory("the order of elimination");
+  }
+  solver->order_count = graph->node_count;
+  solver->order_fill = solver->common.lnz;
+  solver->stats.orders++;
+  return STATUS_OK;
+}
+
+static Status build_tree(CholmodSolver *solver, const FemMatrix *matrix, VertexGraph *graph) {
+  cholmod_factor *symbolic;
+  TRY(find_fronts_by_kept(solver, graph, &symbolic));
+  if (!symbolic) TRY(find_fronts_anew(solver, graph, &symbolic));
   FemFrontDef def = {.node_count = graph->node_count,
                      .first = graph->first,
                      .begin = graph->begin,
@@ -188,7 +229,7 @@ static Status build_tree(CholmodSolver *solver, const FemMatrix *matrix, const V
 
 static Status analyse_matrix(CholmodSolver *solver, const FemMatrix *matrix) {
   VertexGraph graph = {0};
-  Status status = order(solver, matrix, &graph);
+  Status status = make_graph(matrix, &graph);
   if (status == STATUS_OK) status = build_tree(solver, matrix, &graph);
   free_graph(&graph);
   TRY(status);

@@ -115,8 +115,9 @@ static Status answer_range(const OverlapClipLanes *lanes, const OverlapBatch *ba
   return STATUS_OK;
 }
 
-// What one thread takes at a time, and from how many pairs on more than one thread is worth it.
-enum { PORTION = 512, WORTH_THREADS = 4096 };
+// What one thread takes at a time: small portions of small batches, so that there are enough of them. From
+// WORTH_THREADS pairs on more than one thread is worth it.
+enum { PORTION = 512, SMALL_PORTION = 128, MANY = 16 * PORTION, WORTH_THREADS = 4 * SMALL_PORTION };
 
 // `self`: the lanes; NULL: none, each pair by itself.
 static Status eval_portion(const void *self, const OverlapBatch *portion, int first) {
@@ -130,7 +131,8 @@ static Status eval_portion(const void *self, const OverlapBatch *portion, int fi
 }
 
 static Status eval(const OverlapClipLanes *lanes, const OverlapBatch *batch) {
-  return overlap_portions_eval(batch, PORTION, batch->pair_count >= WORTH_THREADS, eval_portion, lanes);
+  int size = batch->pair_count < MANY ? SMALL_PORTION : PORTION;
+  return overlap_portions_eval(batch, size, batch->pair_count >= WORTH_THREADS, eval_portion, lanes);
 }
 
 static Status eval_one(const OverlapClipLanes *lanes, const double pair[24], const OverlapAnswer *answer) {

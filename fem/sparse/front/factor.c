@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "fem/sparse/front/dense.h"
 #include "fem/sparse/front/sweep.h"
+#include "fem/sparse/vector.h"
 
 // Columns that are eliminated together in a front whose panel is cut into pieces, and the sides of a piece.
 enum { BLOCK = 128, TILE = 256 };
@@ -408,6 +409,7 @@ static void sweep_root(FemFrontFactor *factor, int root) {
 static void solve(FemFrontFactor *factor, bool is_rough, const double *b, double *x) {
   const FemFrontTree *tree = factor->tree;
   factor->is_rough = is_rough;
+#pragma omp parallel for schedule(static) if (tree->size > FEM_VECTOR_LONG)
   for (int i = 0; i < tree->size; i++) factor->x[i] = b[tree->unknown[i]];
 #pragma omp parallel
 #pragma omp single
@@ -416,6 +418,7 @@ static void solve(FemFrontFactor *factor, bool is_rough, const double *b, double
 #pragma omp task firstprivate(f)
       sweep_root(factor, f);
     }
+#pragma omp parallel for schedule(static) if (tree->size > FEM_VECTOR_LONG)
   for (int i = 0; i < tree->size; i++) x[tree->unknown[i]] = factor->x[i];
 }
 

@@ -431,6 +431,42 @@ START_TEST(a_grown_pattern_must_be_analysed_anew) {
 }
 END_TEST
 
+static Bar bar_with_ties(int cells, int ties) {
+  Bar bar = bar_create(cells, 2);
+  for (int k = 0; k < ties; k++) {
+    int far[2] = {16 + 3 * k, bar.vertex_count - 1 - 5 * k};
+    ck_assert_ok(fem_pattern_add_clique(bar.pattern, 2, far, NULL));
+  }
+  FemMatrix tied;
+  ck_assert_ok(fem_matrix_create(&tied, bar.pattern, bar.unknown_of_dof));
+  fem_matrix_destroy(&bar.S);
+  bar.S = tied;
+  return bar;
+}
+
+// Of a new layout with the same couplings it is kept; with vertices tied to far ones it is not.
+START_TEST(an_order_of_elimination_is_kept_while_its_fill_is_near) {
+  const FemSolverOps *ops = &fem_solver_cholmod;
+  Bar bar = bar_create(40, 2), same = bar_create(40, 2), tied = bar_with_ties(40, 60);
+  void *solver;
+  ck_assert_ok(ops->create(&solver, 1, 0));
+  ck_assert_ok(ops->analyse(solver, &bar.S));
+  ck_assert_ok(ops->analyse(solver, &same.S));
+  ck_assert_int_eq(ops->stats(solver)->analyses, 2);
+  ck_assert_int_eq(ops->stats(solver)->orders, 1);
+  ck_assert_ok(factorise(&same, ops, solver));
+  double *r = random_vector(2 * same.unknown_count, 9);
+  double *x = memory_zeroed(2 * (size_t)same.unknown_count, sizeof *x);
+  solve_newton(&same, ops, solver, r, x);
+  ck_assert_near(relative_residual(&same, r, x), 0, 1e-10);
+  ck_assert_ok(ops->analyse(solver, &tied.S));
+  ck_assert_int_eq(ops->stats(solver)->orders, 2);
+  ops->destroy(solver);
+  memory_free(r), memory_free(x);
+  bar_destroy(&bar), bar_destroy(&same), bar_destroy(&tied);
+}
+END_TEST
+
 START_TEST(every_failed_allocation_is_an_error) {
   Bar bar = bar_create(2, 3);
   for (int kind = 0; kind < KIND_COUNT; kind++) {
@@ -467,6 +503,7 @@ int main(void) {
   tcase_add_test(cases, multigrid_needs_far_fewer_iterations_than_blocks_of_vertices);
   tcase_add_test(cases, a_singular_full_matrix_is_a_retry);
   tcase_add_test(cases, a_grown_pattern_must_be_analysed_anew);
+  tcase_add_test(cases, an_order_of_elimination_is_kept_while_its_fill_is_near);
   tcase_add_test(cases, every_failed_allocation_is_an_error);
   return suite_run("solver", cases, 60);
 }
