@@ -20,14 +20,16 @@ static size_t of_list(const ContactCandidateList *list) {
 }
 
 size_t contact_footprint_candidates(const ContactCandidates *candidates) {
-  return of_list(&candidates->list) + of_list(&candidates->next) +
-         HELD(candidates->reference, candidates->found.pairs, candidates->is_listed, candidates->boxes,
+  size_t found = 0;
+  for (int f = 0; f < candidates->found_count; f++) found += memory_held(candidates->found[f].pairs.pairs);
+  return found + of_list(&candidates->list) + of_list(&candidates->next) +
+         HELD(candidates->reference, candidates->found, candidates->is_listed, candidates->boxes,
               candidates->motions, candidates->expected, candidates->is_left_out);
 }
 
 size_t contact_footprint_near(const ContactNear *near) {
   return of_list(&near->list) +
-         HELD(near->reference, near->motions, near->blown, near->boxes, near->is_listed);
+         HELD(near->reference, near->motions, near->blown, near->boxes, near->is_listed, near->is_kept);
 }
 
 size_t contact_footprint_rest(const ContactRest *rest) {

@@ -111,6 +111,7 @@ static void mark_portion(ContactNear *near, const ContactPair *pairs, int begin,
       memcpy(coordinates + 24 * (size_t)asked + 12 * side, near->blown[cells[side]], sizeof *near->blown);
     from[asked++] = k;
   }
+  if (asked == 0) return;
   overlap_separation_find(asked, coordinates, is_apart);
   for (int k = 0; k < asked; k++) near->is_kept[from[k]] = !is_apart[k];
 }

@@ -25,6 +25,7 @@ void fem_run_result_add_integrator(FemIntegratorStats *total, const FemIntegrato
 void fem_run_result_add_solver(FemSolverStats *total, const FemSolverStats *part) {
   total->analyses += part->analyses, total->factorisations += part->factorisations;
   total->failed_factorisations += part->failed_factorisations, total->hierarchies += part->hierarchies;
+  total->orders += part->orders;
   total->solves += part->solves, total->iterations += part->iterations;
   total->analyse_s += part->analyse_s, total->factorise_s += part->factorise_s;
   total->solve_s += part->solve_s;
@@ -244,6 +245,7 @@ static void summarise_counters(const FemRunResult *result, Record *record) {
   record_integer(record, "analyses", result->matrix.solver.analyses);
   record_integer(record, "factorisations", result->matrix.solver.factorisations);
   record_integer(record, "failed_factorisations", result->matrix.solver.failed_factorisations);
+  record_integer(record, "orders", result->matrix.solver.orders);
   record_integer(record, "hierarchies", result->matrix.solver.hierarchies);
   record_integer(record, "linear_solves", result->matrix.solver.solves);
   record_integer(record, "linear_iterations", result->matrix.solver.iterations);

@@ -76,6 +76,7 @@ static const FemCheckpointNumber numbers[] = {
     COUNT(matrix, solver.analyses),
     COUNT(matrix, solver.factorisations),
     COUNT(matrix, solver.failed_factorisations),
+    COUNT(matrix, solver.orders),
     COUNT(matrix, solver.hierarchies),
     COUNT(matrix, solver.solves),
     COUNT(matrix, solver.iterations),
@@ -138,7 +139,7 @@ static const FemCheckpointNumber numbers[] = {
 static_assert(sizeof(FemAudit) == 17 * sizeof(double), "numbers[] lists every number of FemAudit");
 static_assert(sizeof(FemRunPhases) == 15 * sizeof(double), "numbers[] lists every phase");
 static_assert(sizeof(FemIntegratorStats) == 10 * sizeof(double), "numbers[] lists the integrator's counts");
-static_assert(sizeof(FemSolverStats) == 10 * sizeof(double), "numbers[] lists the solver's counts");
+static_assert(sizeof(FemSolverStats) == 11 * sizeof(double), "numbers[] lists the solver's counts");
 static_assert(sizeof(ContactPairCounts) == 7 * sizeof(long long), "numbers[] lists the counts of pairs");
 static_assert(sizeof(ContactStatusCounts) == 4 * sizeof(long long),
               "numbers[] lists the counts of the status");
