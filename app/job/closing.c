@@ -70,6 +70,7 @@ static void print_files(const AppJob *job) {
   print_line("files:", "%s: %s%ssummary.json, manifest.json", job->directory,
              job->scene.write_vtu ? "frames.pvd (ParaView), " : "",
              job->scene.history == FEM_HISTORY_NONE ? "" : "history.csv, ");
+  if (job->scene.checkpoint_frames != 0) print_line("", "end.h5, from which another scene may start");
   print_line("", "`tetlap report %s` makes a web page of them", job->directory);
 }
 

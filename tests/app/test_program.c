@@ -99,9 +99,12 @@ START_TEST(a_verbose_run_has_a_line_for_every_step) {
 END_TEST
 
 START_TEST(a_run_names_the_files_that_it_wrote) {
+  static const char end[] = "^ *end.h5, from which another scene may start$";
   ck_assert(run_says("", "^files: .*: frames.pvd (ParaView), history.csv, summary.json, manifest.json$"));
   ck_assert(run_says("--set output.vtu=false", "^files: *[^ ]*: history.csv, summary.json, manifest.json$"));
   ck_assert(run_says("--set output.history=none", "^files: *[^ ]*: frames.pvd (ParaView), summary.json"));
+  ck_assert(run_says("", end));
+  ck_assert(!run_says("--set output.checkpoint.frames=0", end));
 }
 END_TEST
 
