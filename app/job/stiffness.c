@@ -10,6 +10,7 @@ static const char *const reasons[] = {
     [FEM_COMPLIANCE_BODIES] = "by 2 % of the bodies' compression",
     [FEM_COMPLIANCE_BLOW] = "by the hardest impact",
     [FEM_COMPLIANCE_ELEMENTS] = "by the elements at curved surfaces",
+    [FEM_COMPLIANCE_LEAVES] = "by the elements of leaves that bend together",
 };
 enum { REASONS = sizeof reasons / sizeof *reasons };
 

@@ -9,9 +9,8 @@
 #include "base/vec3.h"
 #include "contact/surface/roundness.h"
 #include "contact/surface/smooth_points.h"
-#include "contact/surface/surface.h"
-#include "fem/material/svd3.h"
 #include "fem/model/blow.h"
+#include "fem/model/leaf.h"
 #include "fem/model/patch.h"
 
 // The deformation of the interface over that of the bodies, and its depth over the height in an impact, at
@@ -28,72 +27,12 @@ static const double LAYER_GIVE = 0.34, HOLLOW_GIVE = 0.25, SAGITTAS = 2.5, SNUG 
 // which on bodies are squeezed as a whole.
 static const double RESOLVED = 2.2, WIDE = 0.6;
 
-static Vec3 corner_of(const FemModel *model, int tet, int v) {
-  return vec3_at(model->rest + 3 * (size_t)model->tets[tet][v]);
-}
-
-// Volume, and ∫ x and ∫ x xᵀ about the body's first vertex.
-typedef struct Moments {
-  double volume;
-  Vec3 first;
-  double second[9];
-} Moments;
-
-static void add_tet(const FemModel *model, int tet, Vec3 origin, Moments *moments) {
-  Vec3 x[4], sum = {0, 0, 0};
-  for (int v = 0; v < 4; v++) x[v] = vec3_sub(corner_of(model, tet, v), origin), sum = vec3_add(sum, x[v]);
-  double volume = fabs(vec3_det4(x[0], x[1], x[2], x[3])) / 6;
-  moments->volume += volume;
-  moments->first = vec3_add(moments->first, vec3_scale(volume / 4, sum));
-  for (int v = 0; v < 5; v++) {
-    Vec3 y = v < 4 ? x[v] : sum;
-    const double p[3] = {y.x, y.y, y.z};
-    for (int e = 0; e < 9; e++) moments->second[e] += volume / 20 * p[e / 3] * p[e % 3];
-  }
-}
-
-// The least radius of inertia about the centroid: the root of the least principal value of the covariance.
-static double least_radius(const FemModel *model, const FemModelBody *body, double *volume) {
-  Moments moments = {0};
-  FemSvd3 principal;
-  Vec3 origin = corner_of(model, body->tet_begin, 0);
-  for (int i = body->tet_begin; i < body->tet_end; i++) add_tet(model, i, origin, &moments);
-  const double mean[3] = {moments.first.x / moments.volume, moments.first.y / moments.volume,
-                          moments.first.z / moments.volume};
-  for (int e = 0; e < 9; e++)
-    moments.second[e] = moments.second[e] / moments.volume - mean[e / 3] * mean[e % 3];
-  fem_svd3_factor(&principal, moments.second);
-  *volume = moments.volume;
-  return sqrt(fabs(principal.sigma[2]));
-}
-
-static Status measure_area(const FemModel *model, const FemModelBody *body, double *area) {
-  ContactSurface surface;
-  TRY(contact_surface_find(&surface, (const int(*)[4])model->tets, body->tet_begin, body->tet_end));
-  *area = 0;
-  for (int f = 0; f < surface.count; f++) {
-    Vec3 x[3];
-    for (int v = 0; v < 3; v++) x[v] = vec3_at(model->rest + 3 * (size_t)surface.faces[f].vertices[v]);
-    *area += 0.5 * vec3_length(vec3_cross(vec3_sub(x[1], x[0]), vec3_sub(x[2], x[0])));
-  }
-  contact_surface_destroy(&surface);
-  return STATUS_OK;
-}
-
-// L of a body [m].
-static Status measure_height(const FemModel *model, int body, double *height) {
-  double volume, area, radius = least_radius(model, &model->bodies[body], &volume);
-  TRY(measure_area(model, &model->bodies[body], &area));
-  *height = fmin(sqrt(12) * radius, 6 * volume / area);
-  return STATUS_OK;
-}
-
 // Of every body; an obstacle is rigid and has none.
 typedef struct Give {
-  double height;  // L [m]
-  double inverse; // 1/E [1/Pa]
-  double give;    // (1 − HELD ν⁴)/E: of what is pressed between faces that hold it [1/Pa]
-  double volume;  // V [m³]
+  FemExtent extent; // its height is L
+  double inverse;   // 1/E [1/Pa]
+  double give;      // (1 − HELD ν⁴)/E: of what is pressed between faces that hold it [1/Pa]
+  double volume;    // V [m³]
   ContactRoundness roundness;
   double low[3], high[3]; // the box around it at rest; of a shape without elements that of its radius [m]
 } Give;
@@ -167,7 +106,7 @@ static Status measure_bodies(const FemModel *model, Give *gives) {
   for (int b = 0; b < model->scene->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
     const double square = body->material.poisson * body->material.poisson;
-    TRY(measure_height(model, b, &gives[b].height));
+    TRY(fem_extent_measure(model, b, &gives[b].extent));
     gives[b].inverse = 1 / body->material.young;
     gives[b].give = (1 - HELD * square * square) / body->material.young;
     gives[b].volume = body->mass / body->material.density;
@@ -178,8 +117,8 @@ static Status measure_bodies(const FemModel *model, Give *gives) {
 // By how much two bodies yield for each Pa between them [m/Pa]: no patch of contact is larger than the
 // smaller one, and material farther away than its height deforms little.
 static double give_of(const Give *a, const Give *b) {
-  if (!(a->give > 0) || !(b->give > 0)) return a->height * a->give + b->height * b->give;
-  return fmin(a->height, b->height) * (a->give + b->give);
+  if (!(a->give > 0) || !(b->give > 0)) return a->extent.height * a->give + b->extent.height * b->give;
+  return fmin(a->extent.height, b->extent.height) * (a->give + b->give);
 }
 
 // How two meet of which one curves at least.
@@ -188,6 +127,7 @@ typedef struct Meeting {
   double curvature;          // [1/m]
   double radius;             // of their contact; 0: nothing tells it [m]
   double layer;              // what the interface must yield for each Pa [m/Pa]
+  double leaf;               // the most that two bent leaves bear; INFINITY: they are none [Pa/m]
 } Meeting;
 
 // A small patch yields by δ = π/2 a Σ 1/E' times the pressure in its middle.
@@ -209,13 +149,14 @@ static double pressure_of(const Give *a, const Give *b, double blow) {
 // than its elements resolve. `terms`: of p = terms · c d.
 static double stiffness_between(const Give *a, const Give *b, double blow, int terms, const Meeting *meeting,
                                 FemComplianceBound *bound) {
-  double sum = give_at(a, b, meeting), height = a->height;
+  double sum = give_at(a, b, meeting), height = a->extent.height;
   *bound = FEM_COMPLIANCE_BODIES;
   if (!(sum > 0)) return 1;
-  if (b->height > 0) height = height > 0 ? fmin(height, b->height) : b->height;
+  if (b->extent.height > 0) height = height > 0 ? fmin(height, b->extent.height) : b->extent.height;
   double stiffness = 1 / (terms * GIVE * sum),
          struck = pressure_of(a, b, blow) / (terms * BLOW_DEPTH * height);
   if (meeting->layer > GIVE * sum) stiffness = 1 / (terms * meeting->layer), *bound = FEM_COMPLIANCE_ELEMENTS;
+  if (meeting->leaf < stiffness) stiffness = meeting->leaf, *bound = FEM_COMPLIANCE_LEAVES;
   if (struck > stiffness) stiffness = struck, *bound = FEM_COMPLIANCE_BLOW;
   return stiffness;
 }
@@ -265,15 +206,25 @@ static double resolved_by(double radius, double edge) {
   return edge > 0 ? fmax(1, radius / (RESOLVED * edge)) : 1;
 }
 
+static double leaf_between(const FemModel *model, const Give *gives, int a, int b) {
+  const FemExtent extents[2] = {gives[a].extent, gives[b].extent};
+  return fem_leaf_stiffness(model, (const int[2]){a, b}, extents);
+}
+
 // Only what bulges meets first: a hole in a face that nothing fills does not curve it.
 static Meeting meeting_of(const FemModel *model, const Give *gives, const Course *course, int a, int b) {
   const Give *one = &gives[a], *other = &gives[b];
   Meeting meeting = {.curvature = one->roundness.round + other->roundness.round,
-                     .is_hollow = lies_in_hollow(one, other)};
+                     .is_hollow = lies_in_hollow(one, other),
+                     .leaf = INFINITY};
   meeting.is_curved = a != b && meeting.curvature > 0;
-  if (!meeting.is_curved) return meeting;
+  if (!meeting.is_curved) {
+    if (!(curvature_of(one) > 0) && !(curvature_of(other) > 0))
+      meeting.leaf = leaf_between(model, gives, a, b);
+    return meeting;
+  }
   meeting.radius = radius_between(model, gives, course, a, b, meeting.curvature);
-  if (!meeting.is_hollow && meeting.radius * meeting.curvature > WIDE) return (Meeting){.is_curved = false};
+  if (!meeting.is_hollow && meeting.radius * meeting.curvature > WIDE) return (Meeting){.leaf = INFINITY};
   if (!meeting.is_hollow && !(meeting.radius > 0)) return meeting; // 2 % hold, whatever the elements are
   double edge = fmax(one->roundness.edge, other->roundness.edge);
   meeting.layer = (meeting.is_hollow ? HOLLOW_GIVE : LAYER_GIVE / resolved_by(meeting.radius, edge)) *

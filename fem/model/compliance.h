@@ -9,9 +9,7 @@
 //
 // keeps the first at 2 % of the second: 12.5 E'/L for two equal bodies. E' is a fit to the stiffness of cubes
 // that are held on the pressed face. Obstacles do not yield, and a shape without elements presses with c d in
-// place of 2 c d: against one, c = 50 E'/L. The height of a body of any shape is the smaller of √12 times its
-// least radius of inertia, which is the least edge of a box, and six times its volume over its surface, which
-// is the edge of a cube and follows the wall of what is hollow.
+// place of 2 c d: against one, c = 50 E'/L. Heights are those of extent.h.
 //
 // An impact may compress bodies by as much as their height. Two bodies that store the energy W of the hardest
 // impact of the scene (blow.h) press each other with p = √(2 W / (V_A/E_A + V_B/E_B)), V their volumes.
@@ -24,7 +22,7 @@
 // the edge of a cube stores the whole of W, p² L³/(2 E) then (twice that of two equal cubes), within d = L/4
 // (L/3).
 //
-// Between flat faces the choice does not depend on the mesh.
+// Between flat faces the choice does not depend on the mesh, but for leaves that bend together (leaf.h).
 //
 // Where a surface curves, facets touch at corners if the overlap is not as deep as their sagittas, and the
 // elements do not resolve what varies within an edge. So the interface yields at least as much as λ of the
@@ -54,6 +52,7 @@ typedef enum FemComplianceBound {
   FEM_COMPLIANCE_BODIES,   // 2 % of the compression of the bodies
   FEM_COMPLIANCE_BLOW,     // the hardest impact
   FEM_COMPLIANCE_ELEMENTS, // the elements at a curved surface
+  FEM_COMPLIANCE_LEAVES,   // two leaves that bend together
 } FemComplianceBound;
 
 typedef struct FemCompliance {

@@ -2,6 +2,8 @@
 // The contact stiffness where surfaces curve, and how often their edges are halved.
 #include "fem/model/compliance.h"
 
+#include <math.h>
+
 #include "fem/model/patch.h"
 #include "scene.h"
 
@@ -113,6 +115,50 @@ START_TEST(the_choice_knows_no_lengths_and_no_directions) {
 }
 END_TEST
 
+// c = 2 D/λ⁴, D of both, λ³ = 1.5 L h²; in a scene that is turned, too.
+START_TEST(leaves_that_bend_together_are_no_stiffer_than_their_elements) {
+  static const char *const TURNED[] = {
+      "bodies.upper.place={rotate: {axis: [0, 0, 1], degrees: 90}, translate: [0, 0, 0.002]}",
+      "bodies.lower.place={rotate: {axis: [0, 0, 1], degrees: 90}}",
+      "bodies.upper.fixed=[{box: {min: [-1, -1, -1], max: [1, 1e-9, 1]}}]",
+      "bodies.lower.fixed=[{box: {min: [-1, -1, -1], max: [1, 1e-9, 1]}}]",
+      "bodies.upper.loads=[{box: {min: [-1, 0.0999, -1], max: [1, 1, 1]}, force: [0, 0, -2]}]",
+      NULL};
+  double bending = 2e11 * 8e-9 / 12 / 2, edge = 0.1 / 33 / 2, spread = cbrt(1.5 * 0.1 * edge * edge);
+  SceneRun run;
+  FemCompliance choice;
+  for (int k = 0; k < 2; k++) {
+    choose(&run, "../../examples/validation/leaves", k ? TURNED : NULL, &choice);
+    ck_assert_int_eq(choice.bounds[1], FEM_COMPLIANCE_LEAVES);
+    ck_assert_near(choice.stiffness[1], 2 * bending / pow(spread, 4), 0.1 * choice.stiffness[1]);
+    forget(&run, &choice);
+  }
+}
+END_TEST
+
+// Two sheets that a driven face, a moved obstacle or a large load squeezes, and two short blocks.
+START_TEST(leaves_that_are_squeezed_are_pressed_by_their_heights) {
+  static const char *const FACE[] = {"bodies.upper.fixed=null",
+                                     "bodies.upper.driven=[{box: {min: [-1, -1, 0.0039], max: [1, 1, 1]}, "
+                                     "components: [z], formula: {z: -1e-5*t}}]",
+                                     NULL};
+  static const char *const PUNCH[] = {"obstacles=[{name: punch, halfspace: {point: [0, 0, 0.005], normal: "
+                                      "[0, 0, -1]}, velocity: [0, 0, -1e-3]}]",
+                                      NULL};
+  static const char *const LOAD[] = {"bodies.upper.loads[0].force=[0, 0, -2e3]", NULL};
+  static const char *const SHORT[] = {"bodies.upper.loads=null",
+                                      "bodies.upper.mesh.box.size=[0.018, 0.002, 0.002]", NULL};
+  const char *const *const changes[] = {FACE, PUNCH, LOAD, SHORT};
+  SceneRun run;
+  FemCompliance choice;
+  for (int k = 0; k < 4; k++) {
+    choose(&run, "../../examples/validation/leaves", changes[k], &choice);
+    ck_assert_int_eq(choice.bounds[1], FEM_COMPLIANCE_BODIES);
+    forget(&run, &choice);
+  }
+}
+END_TEST
+
 START_TEST(the_scene_has_the_last_word) {
   SceneRun run;
   FemCompliance choice;
@@ -134,6 +180,8 @@ int main(void) {
   tcase_add_test(tests, a_torque_tells_no_patch);
   tcase_add_test(tests, a_shaft_beside_a_hole_of_its_radius_lies_in_no_hollow);
   tcase_add_test(tests, the_choice_knows_no_lengths_and_no_directions);
+  tcase_add_test(tests, leaves_that_bend_together_are_no_stiffer_than_their_elements);
+  tcase_add_test(tests, leaves_that_are_squeezed_are_pressed_by_their_heights);
   tcase_add_test(tests, the_scene_has_the_last_word);
   return suite_run("compliance", tests, 60);
 }

@@ -27,9 +27,21 @@ START_TEST(a_shaft_presses_as_lame_says_at_the_defaults) {
 }
 END_TEST
 
+// Each bears half of the load. At 2 % of their compression the force between them is four times as large.
+START_TEST(two_leaves_of_a_spring_share_the_load) {
+  SceneRun run;
+  scene_run(&run, "../../examples/validation/leaves",
+            (const char *const[]){"solver.threads=1", "bodies.upper.mesh.box.cells=[20, 1, 1]",
+                                  "bodies.lower.mesh.box.cells=[17, 1, 1]", NULL});
+  ck_assert_near(scene_force(&run, run.result.trajectory.frame_count - 1, 0)[2], 1, 0.1);
+  scene_close(&run);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("smooth_scenes");
   tcase_add_test(tests, a_shaft_presses_on_its_hole_as_lame_says);
   tcase_add_test(tests, a_shaft_presses_as_lame_says_at_the_defaults);
+  tcase_add_test(tests, two_leaves_of_a_spring_share_the_load);
   return suite_run("smooth_scenes", tests, 60);
 }
