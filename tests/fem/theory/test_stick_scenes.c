@@ -109,6 +109,27 @@ END_TEST
 
 // A block dragged over a block that is meshed otherwise, from equilibrium to equilibrium: T = μN, and what is
 // put in is dissipated, that of the overlap at the start included.
+// A shear beam on a belt: sticking it takes G v t/H, c d's spring included, until that is μ p; then it slips,
+// and swings like a free end that had the belt's speed, by v H/(2 c).
+START_TEST(a_block_on_a_belt_breaks_away_and_slips_at_mu_p) {
+  SceneRun run;
+  scene_run(&run, "../../examples/validation/belt", (const char *const[]){"solver.threads=1", NULL});
+  double area = 4e-4, swing = 0, slip = 0.5 * 1e4 * area, speed = 0.002;
+  for (int f = 10; f < run.result.trajectory.frame_count; f++) {
+    double time = run.result.trajectory.times[f], force = scene_force(&run, f, 0)[0];
+    double stick = speed * (time - 0.05) / (0.1 / 5e5 + 1e-9) * area;
+    if (time < 0.55) ck_assert_near(force, stick, 0.01 * slip);
+    if (time < 0.555) continue;
+    ck_assert_near(force, slip, 1e-6 * slip);
+    swing = fmax(swing, scene_position(&run, f, 0)[0] - run.model.rest[0] - 0.001);
+  }
+  // not all of it: frames miss the turn
+  ck_assert_double_le(swing, 1.1 * speed * 0.1 / (2 * sqrt(500)));
+  ck_assert_double_ge(swing, 0.5 * speed * 0.1 / (2 * sqrt(500)));
+  scene_close(&run);
+}
+END_TEST
+
 START_TEST(static_scenes_have_friction) {
   SceneRun run;
   scene_run(&run, "drag", NULL);
@@ -169,6 +190,7 @@ int main(void) {
   tcase_add_test(test_case, what_slides_uphill_turns_where_it_stops);
   tcase_add_loop_test(test_case, a_cube_held_between_plates_is_carried_by_what_is_written, 0, 3);
   tcase_add_test(test_case, a_ball_that_slides_rolls_on_at_what_its_inertia_leaves);
+  tcase_add_test(test_case, a_block_on_a_belt_breaks_away_and_slips_at_mu_p);
   tcase_add_test(test_case, static_scenes_have_friction);
   return suite_run("stick_scenes", test_case, 120);
 }
