@@ -6,18 +6,25 @@
 #include "base/vec3.h"
 #include "fem/scene/drive.h"
 
-enum { SAMPLES = 65 }; // of a motion or a load's factor in time
+enum { SAMPLES = 129 }; // of a motion or a load's factor in time
 
+// The end, and times that no period shares: multiples of the golden ratio.
 static double sample_time(const FemModel *model, int k) {
-  return model->scene->end * k / (SAMPLES - 1);
+  return model->scene->end * (k == 0 ? 1 : fmod(k * 0.6180339887498949, 1));
+}
+
+// ... after them the rows of a table, of rows of `width` numbers; beyond the end the end.
+static double table_time(const FemModel *model, const double *table, int width, int row) {
+  return fmin(fmax(table[(size_t)width * (size_t)row], 0), model->scene->end);
 }
 
 static double travel_of(const FemModel *model, const FemConstraintDef *def, const double rest[3]) {
   double from[3], to[3], velocity[3], farthest = 0;
   if (fem_drive_is_still(def)) return 0;
   fem_drive_point(def, 0, rest, from, velocity);
-  for (int k = 1; k < SAMPLES; k++) {
-    fem_drive_point(def, sample_time(model, k), rest, to, velocity);
+  for (int k = 0; k < SAMPLES + def->table_count; k++) {
+    double time = k < SAMPLES ? sample_time(model, k) : table_time(model, def->table, 4, k - SAMPLES);
+    fem_drive_point(def, time, rest, to, velocity);
     double far = vec3_length(vec3_sub(vec3_at(to), vec3_at(from)));
     if (far > farthest) farthest = far;
   }
@@ -52,9 +59,36 @@ double fem_patch_travel(const FemModel *model, int party) {
 
 static double factor_of(const FemModel *model, const FemLoadDef *def) {
   double largest = 0, factor;
-  for (int k = 0; k < SAMPLES; k++)
-    if (!fem_load_factor(def, sample_time(model, k), &factor)) largest = fmax(largest, fabs(factor));
+  for (int k = 0; k < SAMPLES + def->table_count; k++) {
+    double time = k < SAMPLES ? sample_time(model, k) : table_time(model, def->table, 2, k - SAMPLES);
+    if (!fem_load_factor(def, time, &factor)) largest = fmax(largest, fabs(factor));
+  }
   return largest;
+}
+
+// Twice the area vector of a triangle of the model at rest.
+static Vec3 face_vector(const FemModel *model, const int corners[3]) {
+  Vec3 x[3];
+  for (int v = 0; v < 3; v++) x[v] = vec3_at(model->rest + 3 * (size_t)corners[v]);
+  return vec3_cross(vec3_sub(x[1], x[0]), vec3_sub(x[2], x[0]));
+}
+
+// A vertex that carries the load; −1: none does, or it has no resultant.
+static int carrier_of(const FemLoad *load) {
+  if (load->force && load->vertex_count > 0) return load->vertices[0];
+  if (load->triangle_count > 0) return load->triangles[0][0];
+  return load->face_count > 0 ? load->faces[0][0] : -1;
+}
+
+// At factor 1; of a pressure that follows its surface, where that is at rest [N].
+static Vec3 resultant_of(const FemModel *model, const FemLoad *load) {
+  Vec3 force = {0, 0, 0}, area = {0, 0, 0};
+  for (int v = 0; load->force && v < load->vertex_count; v++)
+    force = vec3_add(force, vec3_at(load->force + 3 * (size_t)v));
+  for (int k = 0; k < load->triangle_count; k++)
+    area = vec3_add(area, face_vector(model, load->triangles[k]));
+  for (int k = 0; k < load->face_count; k++) area = vec3_add(area, face_vector(model, load->faces[k]));
+  return vec3_add(force, vec3_scale(-0.5 * load->def->pressure, area));
 }
 
 double fem_patch_load(const FemModel *model, int party) {
@@ -63,12 +97,9 @@ double fem_patch_load(const FemModel *model, int party) {
   const FemModelBody *of = &model->bodies[party];
   for (int l = 0; l < model->load_count; l++) {
     const FemLoad *load = &model->loads[l];
-    Vec3 force = {0, 0, 0};
-    if (!load->force || load->vertex_count == 0 || load->vertices[0] < of->vertex_begin ||
-        load->vertices[0] >= of->vertex_end)
-      continue;
-    for (int v = 0; v < load->vertex_count; v++) force = vec3_add(force, vec3_at(load->force + 3 * v));
-    sum += factor_of(model, load->def) * vec3_length(force);
+    int carrier = carrier_of(load);
+    if (carrier < of->vertex_begin || carrier >= of->vertex_end) continue;
+    sum += factor_of(model, load->def) * vec3_length(resultant_of(model, load));
   }
   if (model->scene->has_gravity && model->scene->is_static)
     sum += of->mass * vec3_length(vec3_at(model->scene->gravity));

@@ -17,7 +17,7 @@
 // driven vertices the one that moves least counts, so a turn about an axis moves nothing towards another
 // body.
 double fem_patch_travel(const FemModel *model, int party);
-// The largest resultant of the loads on a body (a torque has none), its weight included in a static scene; 0:
+// The largest resultant of the loads on a body (a torque has none; a following pressure as at rest), its weight included in a static scene; 0:
 // an obstacle [N].
 double fem_patch_load(const FemModel *model, int party);
 

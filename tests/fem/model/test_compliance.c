@@ -3,6 +3,7 @@
 #include "fem/model/compliance.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "fem/model/patch.h"
 #include "scene.h"
@@ -77,6 +78,45 @@ START_TEST(a_torque_tells_no_patch) {
          (const char *const[]){"bodies.upper.loads=[{all: true, torque: [0, 1, 0]}]", NULL}, &choice);
   ck_assert_double_eq(fem_patch_load(&run.model, 1), 0);
   forget(&run, &choice);
+}
+END_TEST
+
+// The two faces at the ends of the axis are half discs; a pressure that follows one presses along the axis.
+START_TEST(a_pressure_tells_its_patch_whether_it_follows_or_not) {
+  static const char *const FOLLOWS[] = {"surface", "nothing"};
+  for (int k = 0; k < 2; k++) {
+    SceneRun run;
+    char load[160];
+    snprintf(load, sizeof load,
+             "bodies.upper.loads=[{normal: {direction: [0, 1, 0]}, pressure: 1000, follows: %s}]",
+             FOLLOWS[k]);
+    scene_open(&run, "../../examples/validation/crossed", (const char *const[]){load, NULL});
+    ck_assert_near(fem_patch_load(&run.model, 1), 1000 * M_PI * 0.01 / 2, 0.05 * 1000 * M_PI * 0.01 / 2);
+    scene_close(&run);
+  }
+}
+END_TEST
+
+// It is zero at the 65 times that divide the run evenly.
+START_TEST(a_motion_with_a_short_period_is_seen) {
+  SceneRun run;
+  scene_open(&run, "../../examples/validation/crossed",
+             (const char *const[]){"bodies.upper.driven[0].formula.z=0.006*sin(64*pi*t)", NULL});
+  ck_assert_near(fem_patch_travel(&run.model, 1), 0.006, 1e-4);
+  scene_close(&run);
+}
+END_TEST
+
+// One row of a table between two of the times that are looked at.
+START_TEST(a_short_peak_of_a_table_is_seen) {
+  SceneRun run;
+  scene_open(
+      &run, "../../examples/validation/crossed",
+      (const char *const[]){"bodies.upper.driven[0]={group: base, table: [[0, 0, 0, 0], [0.4999, 0, 0, 0], "
+                            "[0.5, 0, 0, -0.006], [0.5001, 0, 0, 0]]}",
+                            NULL});
+  ck_assert_near(fem_patch_travel(&run.model, 1), 0.006, 1e-12);
+  scene_close(&run);
 }
 END_TEST
 
@@ -178,6 +218,9 @@ int main(void) {
   tcase_add_test(tests, fewer_elements_in_a_patch_are_halved_more);
   tcase_add_test(tests, a_patch_that_nothing_tells_leaves_the_rule_of_the_bodies);
   tcase_add_test(tests, a_torque_tells_no_patch);
+  tcase_add_test(tests, a_pressure_tells_its_patch_whether_it_follows_or_not);
+  tcase_add_test(tests, a_motion_with_a_short_period_is_seen);
+  tcase_add_test(tests, a_short_peak_of_a_table_is_seen);
   tcase_add_test(tests, a_shaft_beside_a_hole_of_its_radius_lies_in_no_hollow);
   tcase_add_test(tests, the_choice_knows_no_lengths_and_no_directions);
   tcase_add_test(tests, leaves_that_bend_together_are_no_stiffer_than_their_elements);
