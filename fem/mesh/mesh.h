@@ -4,6 +4,8 @@
 #ifndef TETLAP_FEM_MESH_MESH_H
 #define TETLAP_FEM_MESH_MESH_H
 
+#include <stdbool.h>
+
 #include "base/status.h"
 
 // A named set of vertices: a physical group of the mesh file.
@@ -55,6 +57,7 @@ void fem_mesh_placement_axes(const FemPlacement *placement, double axes[3][3]);
 // Options of meshing surfaces (.stl, .geo) in place.
 typedef struct FemMeshOptions {
   double size; // target edge length in the file's units; 0: a .stl keeps its triangles, a .geo its own sizes
+  bool is_curved; // edges on curved parts of the surface get curved (fem/mesh/curve.h), after reading
 } FemMeshOptions;
 
 // Reads by the ending: .msh (2.2, 4.1; ascii, binary), .mesh (MEDIT), .vtk (legacy), .stl and .geo (meshed in

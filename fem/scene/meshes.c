@@ -6,6 +6,7 @@
 #include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "fem/mesh/curve.h"
 
 // Tells what a mesh of second-order tetrahedra loses as one of linear ones.
 static Status straighten(FemMesh *mesh, const char *path) {
@@ -69,8 +70,12 @@ static Status load_mesh(FemMesh *mesh, const FemSceneDef *scene, const char *pat
                         FemElementKind element, KeptMesh *kept) {
   TRY(path ? take_mesh(mesh, scene, path, options, kept) : fem_mesh_box(mesh, box_size, box_cells));
   TRY(fem_mesh_place(mesh, placement));
+  if (options->is_curved && element != FEM_ELEMENT_QUADRATIC)
+    return status_fail(STATUS_INPUT, "'mesh.curved': only quadratic elements have edges that can be curved; "
+                                     "write 'element: quadratic', or leave 'curved' out");
   if (element == FEM_ELEMENT_QUADRATIC) {
-    Status status = fem_mesh_make_quadratic(mesh);
+    Status status = options->is_curved ? fem_mesh_curve(mesh, scene->contact.crease) : STATUS_OK;
+    if (!status) status = fem_mesh_make_quadratic(mesh);
     return status && path ? status_prefix(status, "%s", path) : status;
   }
   return mesh->middles ? straighten(mesh, path) : STATUS_OK;
