@@ -58,4 +58,9 @@ void app_stiffness_describe_levels(const FemModel *model, const FemCompliance *c
     }
     if (count > 0) text_append(text, size, &used, ")");
   }
+  for (int b = 0; b < model->body_count; b++)
+    if (choice->is_faceted[b])
+      text_append(text, size, &used,
+                  "%s'%s' touches with flat facets: 'curved: true' in its mesh curves its quadratic elements",
+                  used ? "; " : "", fem_compliance_party_name(model, b));
 }

@@ -11,6 +11,7 @@
 #include "contact/surface/smooth_points.h"
 #include "fem/model/blow.h"
 #include "fem/model/leaf.h"
+#include "fem/model/limits.h"
 #include "fem/model/patch.h"
 
 // The deformation of the interface over that of the bodies, and its depth over the height in an impact, at
@@ -273,6 +274,20 @@ static void raise_level(FemCompliance *choice, int body, int level) {
   if (level > choice->levels[body]) choice->levels[body] = level;
 }
 
+// Whether every node on an edge lies halfway, to rounding.
+static bool has_straight_edges(const FemModel *model, int body) {
+  static const int ends[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+  for (int e = model->bodies[body].quadratic_begin; e < model->bodies[body].quadratic_end; e++)
+    for (int k = 0; k < 6; k++) {
+      const int *nodes = model->quadratic_nodes[e];
+      Vec3 a = vec3_at(model->rest + 3 * (size_t)nodes[ends[k][0]]),
+           b = vec3_at(model->rest + 3 * (size_t)nodes[ends[k][1]]),
+           way = vec3_sub(vec3_at(model->rest + 3 * (size_t)nodes[4 + k]), vec3_scale(0.5, vec3_add(a, b)));
+      if (vec3_length(way) > FEM_ROUNDING * vec3_length(vec3_sub(b, a))) return false;
+    }
+  return true;
+}
+
 static void choose_levels(const FemModel *model, const Give *gives, const Course *course,
                           FemCompliance *choice) {
   int wanted = model->scene->contact.smooth, parties = choice->party_count;
@@ -284,9 +299,12 @@ static void choose_levels(const FemModel *model, const Give *gives, const Course
       if (b < model->body_count) raise_level(choice, b, level);
     }
   }
-  for (int a = 0; a < model->body_count; a++)
-    if (!(curvature_of(&gives[a]) > 0) || model->bodies[a].quadratic_end > model->bodies[a].quadratic_begin)
-      choice->levels[a] = 0;
+  for (int a = 0; a < model->body_count; a++) {
+    bool is_quadratic = model->bodies[a].quadratic_end > model->bodies[a].quadratic_begin;
+    bool is_curved = curvature_of(&gives[a]) > 0;
+    choice->is_faceted[a] = is_quadratic && is_curved && choice->levels[a] > 0 && has_straight_edges(model, a);
+    if (!is_curved || is_quadratic) choice->levels[a] = 0;
+  }
 }
 
 int fem_compliance_party(const FemModel *model, const char *name) {
@@ -375,7 +393,8 @@ Status fem_compliance_choose(const FemModel *model, FemCompliance *choice) {
   choice->stiffness = memory_zeroed(count, sizeof *choice->stiffness);
   choice->bounds = memory_zeroed(count, sizeof *choice->bounds);
   choice->levels = memory_zeroed((size_t)model->body_count, sizeof *choice->levels);
-  bool fits = gives && choice->stiffness && choice->bounds && choice->levels;
+  choice->is_faceted = memory_zeroed((size_t)model->body_count, sizeof *choice->is_faceted);
+  bool fits = gives && choice->stiffness && choice->bounds && choice->levels && choice->is_faceted;
   Status status = fits ? choose(model, gives, choice) : status_no_memory("contact stiffness");
   memory_free(gives);
   if (status) fem_compliance_destroy(choice);
@@ -386,6 +405,7 @@ void fem_compliance_destroy(FemCompliance *choice) {
   memory_free(choice->stiffness);
   memory_free(choice->bounds);
   memory_free(choice->levels);
+  memory_free(choice->is_faceted);
   *choice = (FemCompliance){0};
 }
 
