@@ -60,7 +60,8 @@ typedef struct FemCompliance {
   double *stiffness;          // κ of body a with party b                    (body_count, party_count)
   FemComplianceBound *bounds; // what it was chosen by                       (body_count, party_count)
   int *levels;                // of contact.smooth                           (body_count)
-  bool *is_faceted; // a level above 0 is due, but its elements are quadratic, with straight edges (body_count)
+  bool
+      *is_faceted; // a level above 0 is due, but its elements are quadratic, with straight edges (body_count)
 } FemCompliance;
 
 // Entries of what cannot meet are positive too. STATUS_INPUT: `contact.pairs` names what is not there.

@@ -32,8 +32,9 @@ static const SceneKey mesh_keys[] = {
     {"size", SCENE_NUMBER, IN_MESH(mesh_options.size), .range = "(0, inf)", .absent_help = "gmsh's choice",
      .needs = "file", .help = "edge length for meshing .stl and .geo, in the file's units"},
     {"curved", SCENE_SWITCH, IN_MESH(mesh_options.is_curved), .fallback = "false", .needs = "file",
-     .help = "of `element: quadratic`, where the file has straight edges: edges on curved parts of the surface "
-             "follow it, as estimated from the vertices about them; `contact.crease` says which stay sharp"},
+     .help =
+         "of `element: quadratic`, where the file has straight edges: edges on curved parts of the surface "
+         "follow it, as estimated from the vertices about them; `contact.crease` says which stay sharp"},
     {"box", SCENE_SECTION, .section = &mesh_box, .help = "a box in place of a file"},
     {0},
 };

@@ -153,6 +153,7 @@ static void check_obstacles(const FemSceneDef *scene) {
   ck_vector(ground->motion.velocity, 0, 0, 0.5);
   ck_assert_str_eq(tool->mesh_path, "tool.stl");
   ck_assert_double_eq(tool->mesh_options.size, 0.05);
+  ck_assert(tool->mesh_options.is_curved);
   ck_vector(tool->motion.velocity, 1, 0, 0);
   ck_assert_double_eq(tool->motion.spin, -1);
   ck_assert_double_eq(tool->motion.until, 4);

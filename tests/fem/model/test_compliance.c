@@ -199,6 +199,23 @@ START_TEST(leaves_that_are_squeezed_are_pressed_by_their_heights) {
 }
 END_TEST
 
+START_TEST(quadratic_elements_with_straight_edges_are_named) {
+  static const char *const STRAIGHT[] = {"bodies.shaft.element=quadratic", "bodies.ring.element=quadratic",
+                                         NULL};
+  static const char *const CURVED[] = {"bodies.shaft.element=quadratic", "bodies.ring.element=quadratic",
+                                       "bodies.shaft.mesh.curved=true", NULL};
+  for (int k = 0; k < 2; k++) {
+    SceneRun run;
+    FemCompliance choice;
+    choose(&run, "../../examples/validation/shaft", k ? CURVED : STRAIGHT, &choice);
+    ck_assert_int_eq(choice.levels[0], 0);
+    ck_assert(choice.is_faceted[0] == (k == 0));
+    ck_assert(choice.is_faceted[1]);
+    forget(&run, &choice);
+  }
+}
+END_TEST
+
 START_TEST(the_scene_has_the_last_word) {
   SceneRun run;
   FemCompliance choice;
@@ -225,6 +242,7 @@ int main(void) {
   tcase_add_test(tests, the_choice_knows_no_lengths_and_no_directions);
   tcase_add_test(tests, leaves_that_bend_together_are_no_stiffer_than_their_elements);
   tcase_add_test(tests, leaves_that_are_squeezed_are_pressed_by_their_heights);
+  tcase_add_test(tests, quadratic_elements_with_straight_edges_are_named);
   tcase_add_test(tests, the_scene_has_the_last_word);
   return suite_run("compliance", tests, 60);
 }
