@@ -79,6 +79,27 @@ class Stepping(unittest.TestCase):
         del state
         gc.collect()
 
+    def test_what_was_set_can_be_read_and_is_that_of_the_state(self):
+        with opened() as sim, tempfile.TemporaryDirectory() as folder:
+            np.testing.assert_array_equal(sim.drive["plate"], [0, 0, 0])
+            sim.drive["plate"] = [0, 0, -0.001]
+            sim.advance(0.01)
+            state = sim.state()
+            state.write(Path(folder, "state.h5"))
+            sim.drive["plate"], sim.loads["block"] = [0, 0, -0.002], [1, 0, 0]
+            with self.assertRaises(ValueError):
+                sim.drive["plate"] = [np.nan, 0, 0]
+            np.testing.assert_array_equal(sim.drive["plate"], [0, 0, -0.002])
+            with sim.fork() as other:
+                np.testing.assert_array_equal(other.loads["block"], [1, 0, 0])
+            sim.restore(state)
+            np.testing.assert_array_equal(sim.drive["plate"], [0, 0, -0.001])
+            np.testing.assert_array_equal(sim.loads["block"], [0, 0, 0])
+            sim.restore(sim.read_state(Path(folder, "state.h5")))
+            self.assertTrue(np.isnan(sim.drive["plate"]).all())
+            with self.assertRaisesRegex(tetlap.UnknownNameError, "'plate'"):
+                sim.drive["plat"]
+
     def test_a_state_of_a_file_is_of_its_scene(self):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "state.h5")
@@ -225,12 +246,22 @@ class Refusals(unittest.TestCase):
             return error
         return None
 
-    def test_what_a_callback_raises_comes_out_and_ends_the_program(self):
-        sim = opened()
-        sim.on_step(lambda _: 1 / 0)
-        with self.assertRaises(ZeroDivisionError):
-            sim.advance(0.01)
-        self.assertIsNotNone(sim._channel._process.poll())
+    def test_what_a_callback_raises_comes_out_and_the_run_goes_on_from_that_step(self):
+        with opened() as sim:
+            times = []
+
+            def fail_at_the_third(it):
+                times.append(it.time)
+                if len(times) == 3:
+                    raise LookupError("no target")
+
+            sim.on_step(fail_at_the_third)
+            with self.assertRaisesRegex(LookupError, "no target"):
+                sim.advance(0.05)
+            self.assertEqual((len(times), sim.time), (3, times[-1]))
+            sim.advance(until=0.05)
+            self.assertEqual(sim.time, 0.05)
+            self.assertGreater(len(times), 3)
 
     def test_ctrl_c_ends_the_program(self):
         sim = opened()
@@ -239,6 +270,8 @@ class Refusals(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt):
             sim.advance(0.1)
         self.assertIsNotNone(process.wait(10))
+        with self.assertRaisesRegex(tetlap.Error, "closed: it was ended by KeyboardInterrupt"):
+            sim.advance(0.1)
 
 
 if __name__ == "__main__":

@@ -95,6 +95,23 @@ class Views(unittest.TestCase):
             self.assertEqual(len(shown.findall(".//polygon")), 108)
         ElementTree.fromstring(sim._repr_html_())
 
+    def test_a_notebook_follows_a_simulation(self):  # a stand-in: Debian's IPython is no requirement
+        class Handle:
+            def update(self, shown):
+                texts.append(shown)
+
+        texts = []
+        display = types.SimpleNamespace(HTML=str, display=lambda text, display_id: texts.append(text) or Handle())
+        package = types.SimpleNamespace(display=display)
+        with unittest.mock.patch.dict(sys.modules, {"IPython": package, "IPython.display": display}), \
+                tetlap.Simulation(SCENE, threads=1) as sim:
+            self.assertIsInstance(sim.show(every=0), Handle)
+            steps = []
+            sim.on_step(lambda it: steps.append(it.time))
+            sim.advance(0.05)
+            self.assertEqual(len(texts), 1 + len(steps))
+            self.assertIn(f"t = {steps[-1]:.6g} of", texts[-1])
+
     def test_a_notebook_shows_a_comparison(self):
         row = {"model": "a<b", "outcome": "finished", "force_error_l2": 0.25}
         shown = ElementTree.fromstring(tetlap.Comparison(x=tetlap.Compared("a<b", row, None))._repr_html_())

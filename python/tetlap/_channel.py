@@ -32,6 +32,14 @@ class _Refused(Exception):
     """What was asked for makes no sense; the run goes on."""
 
 
+class _Raised(Exception):
+    """A callback raised `error`; the advance ended with its step."""
+
+    def __init__(self, error):
+        super().__init__(str(error))
+        self.error = error
+
+
 def bits(value):
     return _NUMBER.unpack(_BITS.pack(value))[0]
 
@@ -44,9 +52,11 @@ class Channel:
     time: of the run [s]
     """
 
-    def __init__(self, scene, overrides=(), overlap=None, threads=None, descriptors=()):
+    def __init__(self, scene, overrides=(), overlap=None, threads=None, descriptors=(), meanwhile=None):
+        """`meanwhile()` is called while the program opens the scene."""
         self._pid, self._lock, self._process = os.getpid(), threading.Lock(), None
         self._caller = None  # the thread that is in a callback
+        self._ended_by = None  # what broke off a request in the middle
         ours, theirs = socket.socketpair()
         memory = os.memfd_create("tetlap-run")
         command = [_locate.program(), "serve", os.fspath(scene), "--quiet", f"--channel={theirs.fileno()},{memory}"]
@@ -64,7 +74,10 @@ class Channel:
                                              pass_fds=(theirs.fileno(), memory, *descriptors))
             theirs.close()
             self._words = _Words(self._process.stderr)
-            text, _ = self.ask(HELLO, a=_VERSION)
+            self._send(_REQUEST.pack(HELLO, 0, _VERSION, 0))
+            if meanwhile:
+                meanwhile()
+            text, _ = self._listen(HELLO, None)
             self.about = json.loads(text)
             self._memory = mmap.mmap(memory, self.about["size"], prot=mmap.PROT_READ) if self.about["size"] else b""
         except BaseException:
@@ -87,7 +100,7 @@ class Channel:
         if os.getpid() != self._pid:
             raise Error("this Simulation belongs to the process that opened it; a fork of the interpreter has to open its own")
         if not self.is_open:
-            raise Error("this Simulation is closed")
+            raise Error(f"this Simulation is closed{f': it was ended by {self._ended_by}' if self._ended_by else ''}")
 
     def ask(self, what, payload=b"", a=0, b=0, on_step=None):
         """One request and its answer (text, b). `on_step` is called after each step; true stops the run there."""
@@ -102,7 +115,10 @@ class Channel:
             raise
         except _Refused as error:
             raise ValueError(str(error)) from None
-        except BaseException:  # Ctrl-C, or what a callback raised: nobody knows where the words are
+        except _Raised as raised:
+            raise raised.error from None
+        except BaseException as error:  # Ctrl-C: nobody knows where the words are
+            self._ended_by = type(error).__name__
             self._kill()
             raise
         finally:
@@ -110,17 +126,26 @@ class Channel:
 
     def _exchange(self, what, payload, a, b, on_step):
         self._send(_REQUEST.pack(what, len(payload), a, b) + payload)
+        return self._listen(what, on_step)
+
+    def _listen(self, what, on_step):
+        raised = None
         while True:
             code, length, self.time, number = _ANSWER.unpack(self._receive(_ANSWER.size))
             text = self._receive(length).decode("utf-8", "replace") if length else ""
             if code != _STEP:
                 break
-            stop = self._call(on_step)
+            try:
+                stop = self._call(on_step)
+            except Exception as error:  # the run stops after this step and can be used
+                raised, stop = error, True
             self._send(_REQUEST.pack(GO, 0, 0, 1 if stop else 0))
         if code in (_USAGE, _INPUT) and what != HELLO:
             raise _Refused(text)
         if code:
             raise RunError(text, code, None)
+        if raised:
+            raise _Raised(raised)
         return text, number
 
     def _call(self, on_step):

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import os
 import tempfile
+import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
@@ -208,6 +209,7 @@ class _Groups:
     def __init__(self, simulation, kind, about):
         self._simulation, self._kind = simulation, kind
         self._vertices = {group["name"]: group["vertices"] for group in about if group["kind"] == kind}
+        self._values = {name: np.zeros(3) for name in self._vertices}
 
     def __iter__(self):
         return iter(self._vertices)
@@ -221,9 +223,21 @@ class _Groups:
     def __setitem__(self, name, value):
         self.set(name, value)
 
-    def _check(self, name, value):
+    def __getitem__(self, name) -> np.ndarray:
+        """What was set last, a copy; zeros before. NaN: not known, since a state of a file was restored."""
+        self._check_name(name)
+        return self._values[name].copy()
+
+    def _check_name(self, name):
         if name not in self._vertices:
             raise _named(self._vertices, name, "group that is driven from outside" if self._kind == "drive" else "load from outside")
+
+    def _take(self, values):
+        """The values of a state; None: not known."""
+        self._values = dict(values) if values is not None else {name: np.full(3, np.nan) for name in self._vertices}
+
+    def _check(self, name, value):
+        self._check_name(name)
         try:
             value = np.ascontiguousarray(value, dtype=np.float64)
         except (TypeError, ValueError) as error:
@@ -237,6 +251,7 @@ class _Groups:
         value = self._check(name, value)
         kind = 0 if self._kind == "drive" else 1
         self._simulation._change(_channel.SET, name.encode() + b"\0" + value.tobytes(), a=_channel.bits(ramp), b=kind)
+        self._values[name] = value.copy()
 
 
 class Drive(_Groups):
@@ -270,8 +285,9 @@ class State:
     time: [s]
     """
 
-    def __init__(self, simulation, number, time):
+    def __init__(self, simulation, number, time, values=None):
         self._simulation, self._number, self.time = simulation, number, time
+        self._values = values  # of the groups; None: not known
 
     def write(self, path: str | os.PathLike) -> None:
         """As a file, which `Simulation.read_state` of the same scene reads, here or in another process."""
@@ -318,14 +334,14 @@ class Simulation:
             scene = path
         self._open(scene)
 
-    def _open(self, scene):
+    def _open(self, scene, meanwhile=None):
         self._scene, self._dropped, self._fresh = scene, [], 0
         self._forget_callbacks()
         overlap = self._arguments["overlap"]
         self._server = _Server(overlap) if callable(overlap) else None
         try:
             self._channel = Channel(scene, override_texts(self._arguments["set"]), self._server.word if self._server else overlap,
-                                    self._arguments["threads"], self._server.descriptors if self._server else ())
+                                    self._arguments["threads"], self._server.descriptors if self._server else (), meanwhile)
         finally:
             if self._server:
                 self._server.hand_over()
@@ -420,7 +436,7 @@ class Simulation:
         """The present state. The integrator begins anew here, as it does after every `restore`: both go on to the same bits."""
         while self._dropped:
             self._channel.ask(_channel.DROP, b=self._dropped.pop())
-        return State(self, self._change(_channel.KEEP), self.time)
+        return State(self, self._change(_channel.KEEP), self.time, self._group_values())
 
     def restore(self, state: State) -> None:
         """Back, or forth, to a state of this simulation."""
@@ -429,7 +445,15 @@ class Simulation:
         if state._simulation is not self:
             raise ValueError("this state is of another Simulation: hand it over as a file, by State.write and read_state")
         self._change(_channel.RESTORE, b=state._number)
+        self._take_group_values(state._values)
         self._touching = self._find_touching()
+
+    def _group_values(self):
+        return {group._kind: dict(group._values) for group in (self.drive, self.loads)}
+
+    def _take_group_values(self, values):
+        for group in self.drive, self.loads:
+            group._take(values[group._kind] if values else None)
 
     def read_state(self, path: str | os.PathLike) -> State:
         """A state that State.write wrote, of the same scene and the same program."""
@@ -445,14 +469,30 @@ class Simulation:
         other._folder, other._arguments = self._folder, self._arguments
         with tempfile.TemporaryDirectory(prefix="tetlap-") as folder:
             path = Path(folder, "state.h5")
-            state.write(path)
-            other._open(self._scene)
+            other._open(self._scene, meanwhile=lambda: state.write(path))
             other.restore(other.read_state(path))
+        for mine, its in (self.drive, other.drive), (self.loads, other.loads):
+            its._take(mine._values)
         return other
 
     def record(self, path: str | os.PathLike) -> None:
         """Writes what was set so far, and when, as lines of JSON: `tetlap run SCENE --replay PATH` does the same again."""
         self._channel.ask(_channel.RECORD, os.fspath(path).encode())
+
+    def show(self, every: float = 0.2):
+        """In a notebook: a view that follows the run, renewed after a step at most once in `every` seconds of wall time, and the
+        display handle, whose `update` shows anything else. Error: there is no package IPython."""
+        handle = _views.show_html(self._repr_html_())
+        shown = time.monotonic()
+
+        def follow(_):
+            nonlocal shown
+            if time.monotonic() - shown >= every:
+                _views.show_html(self._repr_html_(), handle)
+                shown = time.monotonic()
+
+        self.on_step(follow)
+        return handle
 
     def _repr_html_(self):
         """In a notebook: what touches, and a picture of the bodies at the present time, coloured by speed."""

@@ -58,6 +58,16 @@ def outline_svg(points, tets, colours, size=320):
     return f"<svg width='{size}' height='{size}' viewBox='-2 -2 {size + 4} {size + 4}'>{triangles}</svg>"
 
 
+def show_html(text, handle=None):
+    """Shows it in a notebook; in the place of what the handle showed before. The display handle."""
+    need("IPython")
+    display = import_module("IPython.display")
+    if handle is None:
+        return display.display(display.HTML(text), display_id=True)
+    handle.update(display.HTML(text))
+    return handle
+
+
 def to_meshio(points, cells, point_data, cell_data):
     kind = "tetra" if cells.shape[1] == 4 else "triangle"
     return need("meshio").Mesh(points, [(kind, cells)], point_data=point_data, cell_data={name: [values] for name, values in cell_data.items()})
