@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tools/measure/frontier and precision: that they measure what they say and write what plot and report read.
+// tools/measure/frontier, precision and threads: that they measure what they say and write what plot and
+// report read.
 #include "folder.h"
 
 #include <math.h>
@@ -97,10 +98,59 @@ START_TEST(precision_measures_errors_of_whole_runs) {
 }
 END_TEST
 
+// Bodies that fall freely are soon done; each row has its number of threads, a time and a ratio.
+START_TEST(threads_compares_runs_of_one_scene_by_threads) {
+  char arguments[256];
+  int rows = 0;
+  snprintf(arguments, sizeof arguments,
+           "--threads 1,3 --rounds 2 --plot %s/threads.svg 'tests/scenes/free_fall.yaml@output.frames=2'",
+           folder);
+  int code = run_tool("threads", arguments);
+  if (code == -1) {
+    suite_skip("python3 is not installed");
+    return;
+  }
+  ck_assert_int_eq(code, 0);
+  char *said = folder_read("said");
+  for (char *line = strtok(said, "\n"); line; line = strtok(NULL, "\n")) {
+    int threads;
+    double wall, least, most, ratio;
+    if (sscanf(line, "| free_fall@output.frames=2 | %d | %lf | %lf … %lf | %lf |", &threads, &wall, &least,
+               &most, &ratio) != 5)
+      continue;
+    ck_assert_int_eq(threads, rows == 0 ? 1 : 3);
+    ck_assert_msg(least <= wall && wall <= most && ratio > 0, "%s", line);
+    rows++;
+  }
+  memory_free(said);
+  ck_assert_int_eq(rows, 2);
+  char *picture = folder_read("threads.svg");
+  ck_assert_ptr_nonnull(strstr(picture, "free_fall@output.frames=2, 3</text>"));
+  ck_assert_ptr_nonnull(strstr(picture, "</svg>"));
+  memory_free(picture);
+}
+END_TEST
+
+// A setting that the scene does not know: the program's message is told, not a table.
+START_TEST(threads_tells_why_a_run_failed) {
+  int code = run_tool("threads", "--rounds 1 'tests/scenes/free_fall.yaml@time.nonsense=1'");
+  if (code == -1) {
+    suite_skip("python3 is not installed");
+    return;
+  }
+  ck_assert_int_eq(code, 1);
+  char *errors = folder_read("errors");
+  ck_assert_ptr_nonnull(strstr(errors, "nonsense"));
+  memory_free(errors);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("measure");
   tcase_add_checked_fixture(cases, folder_make, folder_remove);
   tcase_add_test(cases, the_frontier_has_every_model_s_error_and_time);
   tcase_add_test(cases, precision_measures_errors_of_whole_runs);
+  tcase_add_test(cases, threads_compares_runs_of_one_scene_by_threads);
+  tcase_add_test(cases, threads_tells_why_a_run_failed);
   return suite_run("measure", cases, 120);
 }

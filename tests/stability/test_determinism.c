@@ -163,6 +163,26 @@ START_TEST(other_settings_are_the_same_to_the_last_bit) {
 }
 END_TEST
 
+// Many bodies and long vectors: interfaces are searched side by side, vectors divided, domains factorised
+// apart.
+START_TEST(many_bodies_are_the_same_on_any_number_of_threads) {
+  static const int counts[] = {1, 2, 3, 7};
+  char cells[10][48];
+  const char *overrides[13] = {"time.end=0.055", "output.frames=2"};
+  for (int k = 0; k < 10; k++) {
+    snprintf(cells[k], sizeof cells[k], "bodies.cube_%d.mesh.box.cells=6", k);
+    overrides[2 + k] = cells[k];
+  }
+  SceneRun runs[4];
+  for (int k = 0; k < 4; k++) {
+    omp_set_num_threads(counts[k]);
+    scene_run(&runs[k], "cubes", overrides);
+    compare("ten cubes", &runs[0], &runs[k]);
+  }
+  for (int k = 0; k < 4; k++) scene_close(&runs[k]);
+}
+END_TEST
+
 START_TEST(the_scene_has_every_effect) {
   int count, present = 0;
   const FemEffectOps *const *effects = fem_effect_list(&count);
@@ -181,6 +201,7 @@ int main(void) {
   tcase_add_loop_test(test_case, the_number_of_threads_changes_no_bit_of_a_volume, 0, model_count());
   tcase_add_loop_test(test_case, a_run_is_the_same_to_the_last_bit, 0, model_count());
   tcase_add_loop_test(test_case, other_settings_are_the_same_to_the_last_bit, 0, 4);
+  tcase_add_test(test_case, many_bodies_are_the_same_on_any_number_of_threads);
   tcase_add_test(test_case, the_scene_has_every_effect);
   return suite_run("determinism", test_case, 120);
 }
