@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "overlap/model.h"
+#include "overlap/source.h"
 
 static const char ANY[] = "any";
 
@@ -39,13 +40,14 @@ static bool is_known(const char *word) {
 
 static Status check_model(const AppStressOptions *options, const char *word) {
   char path[PATH_MAX];
-  if (!app_model_names_locate(word, path)) return is_known(word) ? STATUS_OK : fail_model(word);
+  if (!app_model_names_locate(word, path) && !overlap_source_is_foreign(word))
+    return is_known(word) ? STATUS_OK : fail_model(word);
   if (!options->has_scenes) return STATUS_OK;
-  return status_fail(
-      STATUS_USAGE,
-      "--overlap %s: of weights files only the pairs are measured; add --pairs, and see `tetlap "
-      "compare` for scenes",
-      word);
+  return status_fail(STATUS_USAGE,
+                     "--overlap %s: of models in files, and of other programs, only the pairs are measured; "
+                     "add --pairs, and see `tetlap "
+                     "compare` for scenes",
+                     word);
 }
 
 static Status check_models(const AppStressOptions *options) {

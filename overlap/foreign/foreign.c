@@ -245,3 +245,7 @@ Status overlap_foreign_create(void **self, const OverlapOps **ops, const char *w
   *self = foreign, *ops = &foreign->ops;
   return STATUS_OK;
 }
+
+Status overlap_foreign_hand_on(const char *word) {
+  return overlap_foreign_process_hand_on(word);
+}

@@ -19,4 +19,8 @@
 Status overlap_foreign_create(void **self, const OverlapOps **ops, const char *word,
                               const OverlapOptions *options);
 
+// Programs that this one starts may open the `channel:` word, too, one after the other. STATUS_INPUT: the
+// descriptors are not there.
+Status overlap_foreign_hand_on(const char *word);
+
 #endif

@@ -336,17 +336,32 @@ Status overlap_foreign_process_open_python(OverlapForeignPort *port, const char 
                 arguments);
 }
 
-Status overlap_foreign_process_attach(OverlapForeignPort *port, const char *word) {
-  int ends[2], used = 0;
+// The descriptors of a word, with these flags from now on, and where its name begins.
+static Status find_channel(const char *word, int flags, int ends[2], const char **name) {
+  int used = 0;
   if (sscanf(word, "channel:%d:%d:%n", &ends[0], &ends[1], &used) != 2 || used == 0 || !word[used])
     return status_fail(STATUS_INPUT, "%s: expected channel:SOCKET:MEMORY:NAME, two descriptors", word);
+  *name = word + used;
   for (int e = 0; e < 2; e++)
-    if (fcntl(ends[e], F_SETFD, FD_CLOEXEC) < 0)
+    if (fcntl(ends[e], F_SETFD, flags) < 0)
       return status_fail(STATUS_INPUT,
                          "%s: the program that has this function did not start this run: start it there",
-                         word + used);
+                         *name);
+  return STATUS_OK;
+}
+
+Status overlap_foreign_process_hand_on(const char *word) {
+  int ends[2];
+  const char *name;
+  return find_channel(word, 0, ends, &name);
+}
+
+Status overlap_foreign_process_attach(OverlapForeignPort *port, const char *word) {
+  int ends[2];
+  const char *name = word;
+  TRY(find_channel(word, FD_CLOEXEC, ends, &name));
   Process *process;
-  TRY(create(&process, word + used));
+  TRY(create(&process, name));
   process->socket = fcntl(ends[0], F_DUPFD_CLOEXEC, 0);
   process->memory = fcntl(ends[1], F_DUPFD_CLOEXEC, 0);
   Status status = process->socket < 0 || process->memory < 0

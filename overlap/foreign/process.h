@@ -38,4 +38,8 @@ Status overlap_foreign_process_open_python(OverlapForeignPort *port, const char 
 // STATUS_INPUT: the descriptors are not there, as in a run that is resumed.
 Status overlap_foreign_process_attach(OverlapForeignPort *port, const char *word);
 
+// Programs that this one starts inherit the channel of such a word, and may open it one after the other.
+// STATUS_INPUT: as above.
+Status overlap_foreign_process_hand_on(const char *word);
+
 #endif

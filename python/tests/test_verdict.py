@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`tetlap verdict --quick` of a model of one's own: clip's volumes are fit for everything, volumes that are a fifth too large for detection alone."""
+"""`tetlap verdict --quick` and `tetlap.verdict` of a model of one's own: clip's volumes are fit for everything, volumes that are a fifth too large for detection alone."""
 
 import json
 import os
@@ -8,6 +8,8 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+
+import tetlap
 
 MODEL = """
 import tetlap
@@ -19,6 +21,33 @@ def twice(pairs):
 
 
 class Verdict(unittest.TestCase):
+    def test_a_function_of_this_process_is_judged(self):
+        def large(pairs):
+            r = tetlap.overlap(pairs, order=1, centroid=True)
+            return {"volume": 1.2 * r.volume, "gradient": 1.2 * r.gradient, "centroid": r.centroid}
+
+        with tempfile.TemporaryDirectory() as folder:
+            got = tetlap.verdict(large, folder, quick=True, seed=5)
+            self.assertEqual((got.seed, got.name), (5, "large"))
+            self.assertEqual((got.detect, got.forces, got.motion), (True, False, False))
+            self.assertEqual(got.grades["detect"], (True, ""))
+            self.assertIn("nodal forces on unseen bodies", got.grades["forces"][1])
+            self.assertIn("fit to detect overlaps: yes", str(got))
+            self.assertAlmostEqual(got.pairs["volume_error"], 0.2, delta=1e-9)
+            self.assertAlmostEqual(got.unseen["total_force_error"], 0.2, delta=0.01)
+            self.assertLess(got.contract["order"], 1e-3)  # clip's V but for rounding
+            self.assertLess(got.contract["motion"], 1e-3)
+            self.assertEqual([row["outcome"] for row in got.runs], ["finished"] * 5)
+            self.assertEqual(list(Path(folder, "large").glob("*.log")), [])  # nothing has failed
+            self.assertIn("<table>", got._repr_html_())
+            self.assertGreater(got.run("drop").summary["contact_force_max"], 0.1)
+            with self.assertRaisesRegex(KeyError, "'roll' was not run; there are press"):
+                got.run("roll")
+
+    def test_a_model_that_is_not_there_is_a_run_error(self):
+        with self.assertRaisesRegex(tetlap.RunError, "tetlap verdict failed: there is no overlap model 'nothing-like-it'"):
+            tetlap.verdict("nothing-like-it", quick=True)
+
     def test_volumes_that_are_too_large_detect_and_give_no_forces(self):
         with tempfile.TemporaryDirectory() as folder:
             Path(folder, "mine.py").write_text(MODEL)

@@ -31,6 +31,8 @@ Runs are processes of their own, by the program. A scene is a file or a dict wit
 Models of overlap are measured on labelled pairs:
 
     load_pairs, evaluate        labelled pairs as arrays; how well a model, yours too, answers them
+    read_weights, write_weights networks of tetlap's as arrays, to and from PyTorch
+    verdict                     what a model, yours too, is fit for: to detect, for forces, to drive a motion
 
 Units are SI. Arrays are float64 of NumPy; shapes stand in parentheses, units in brackets. Wrong arguments raise TypeError or ValueError;
 UnknownNameError (a KeyError) is a name that is not there, RunError a run that failed, with the program's own message and exit code, Error
@@ -48,11 +50,14 @@ from ._results import Frame, Frames, Run, read
 from ._run import run
 from ._simulation import Body, Contact, Drive, Loads, Simulation, State
 from ._table import Failure, Results
+from ._verdict import Verdict, verdict
 from ._volumes import Flag, MeshPairs, Overlap, mesh_overlap, mesh_pairs, overlap
+from ._weights import Weights, read_weights, write_weights
 
 __all__ = ["Body", "Compared", "Comparison", "Contact", "Drive", "Error", "Failure", "Flag", "Frame", "Frames", "Loads", "MeshPairs",
-           "Model", "Overlap", "Poses", "Results", "Run", "RunError", "Simulation", "State", "UnknownNameError", "compare",
-           "evaluate", "gradient", "load_pairs", "map", "mesh_overlap", "mesh_pairs", "models", "overlap", "poses", "read", "run"]
+           "Model", "Overlap", "Poses", "Results", "Run", "RunError", "Simulation", "State", "UnknownNameError", "Verdict", "Weights",
+           "compare",
+           "evaluate", "gradient", "load_pairs", "map", "mesh_overlap", "mesh_pairs", "models", "overlap", "poses", "read", "read_weights", "run", "verdict", "write_weights"]
 
 
 def __getattr__(name):

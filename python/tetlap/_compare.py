@@ -77,7 +77,7 @@ def _execute(command, servers):
     if process.returncode != 0 and not out.strip():  # a model whose run failed is a row, not a failure
         message = "\n".join(said.errors) or f"exit code {process.returncode}"
         cause = next((server.error for server in servers if server.error), None)
-        raise RunError(f"tetlap compare failed: {message}", process.returncode, None) from cause
+        raise RunError(f"tetlap {command[1]} failed: {message}", process.returncode, None) from cause
     return json.loads(out)
 
 

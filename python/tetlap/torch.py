@@ -2,6 +2,7 @@
 """Overlap volumes, and whole runs, as differentiable functions of PyTorch tensors.
 
     V = tetlap.torch.overlap(x)      x (…, 2, 4, 3) on the CPU, V (…)
+    net = tetlap.torch.network(tetlap.read_weights("geo"))      the layers of a network of tetlap's
     q = tetlap.torch.run(scene, {"bodies.block.material.young": young}, ["force:block:z"])
 
 The first derivative is the model's own ∇V. The second is its ∇²V, given as products with the vectors that autograd hands
@@ -73,6 +74,34 @@ def overlap(x, model="clip", threads=0):
     """
     _check(x)
     return _Volume.apply(x, _model(model, threads))
+
+
+class _Layers(torch.nn.Module):
+    """layer.0 … layer.N of a weights file of kind mlp: features to outputs."""
+
+    def __init__(self, weights):
+        super().__init__()
+        count = len(weights.shape["hidden"]) + 1
+        self.layer = torch.nn.ModuleList(torch.nn.Linear(*reversed(weights[f"layer.{k}.weight"].shape)) for k in range(count))
+        self.activate = {"silu": torch.nn.functional.silu, "relu": torch.relu}[weights.shape["activation"]]
+        tensors = {name: torch.from_numpy(value) for name, value in weights.items()}
+        self.to(next(iter(tensors.values())).dtype).load_state_dict(tensors)
+
+    def forward(self, x):
+        for layer in self.layer[:-1]:
+            x = self.activate(layer(x))
+        return self.layer[-1](x)
+
+
+def network(weights):
+    """The layers of a `geo` (tetlap.read_weights) as a torch.nn.Module: features (n, inputs) to outputs (n, outputs). Its
+    state_dict is what tetlap.write_weights takes, with the same shape.
+
+    ValueError: a network of another kind.
+    """
+    if weights.shape.get("kind") != "mlp":
+        raise ValueError(f"a network of kind {weights.shape.get('kind')!r}; expected 'mlp', as geo's is")
+    return _Layers(weights)
 
 
 class _Run(torch.autograd.Function):

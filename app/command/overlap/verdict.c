@@ -14,7 +14,9 @@
 #include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "overlap/foreign/foreign.h"
 #include "overlap/model.h"
+#include "overlap/source.h"
 
 enum { MOST_MODELS = 16 };
 
@@ -133,6 +135,18 @@ static Status plan_models(const Options *options, const Record *before, uint64_t
   return STATUS_OK;
 }
 
+// A function of the program that started this one answers one process at a time.
+static Status count_jobs(const Options *options, int *jobs) {
+  const int most = options->jobs ? options->jobs : cpu_thread_count();
+  *jobs = most < APP_SWEEP_MAX_JOBS ? most : APP_SWEEP_MAX_JOBS;
+  for (int m = 0; m < options->model_count; m++)
+    if (overlap_source_of(options->models[m]) == OVERLAP_SOURCE_CHANNEL) {
+      TRY(overlap_foreign_hand_on(options->models[m]));
+      *jobs = 1;
+    }
+  return STATUS_OK;
+}
+
 // Verdicts of an earlier call that this one was not asked about stay.
 static void keep_others(const Record *before, const Options *options, const AppVerdictPlan *plans,
                         RecordList *models) {
@@ -180,13 +194,13 @@ static Status judge(const Options *options, const Record *before) {
   static AppVerdictFindings findings[MOST_MODELS];
   char digests[MOST_MODELS][DIGEST_TEXT];
   uint64_t seed;
-  const int jobs = options->jobs ? options->jobs : cpu_thread_count();
+  int jobs;
   TRY(choose_seed(options, before, &seed));
   TRY(plan_models(options, before, seed, plans, digests));
+  TRY(count_jobs(options, &jobs));
   TRY(file_make_directories(options->directory));
   if (!before) TRY(write_record(options, plans, NULL, digests, before)); // so that the seed is kept
-  TRY(app_verdict_crew_run(plans, options->model_count, jobs < APP_SWEEP_MAX_JOBS ? jobs : APP_SWEEP_MAX_JOBS,
-                           app_job_stop_flag()));
+  TRY(app_verdict_crew_run(plans, options->model_count, jobs, app_job_stop_flag()));
   for (int m = 0; m < options->model_count; m++) TRY(app_verdict_findings_read(&plans[m], &findings[m]));
   TRY(write_record(options, plans, findings, digests, before));
   TRY(print(options, plans, findings));

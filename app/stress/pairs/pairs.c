@@ -15,6 +15,7 @@
 #include "overlap/exact/exact.h"
 #include "overlap/invariant.h"
 #include "overlap/model.h"
+#include "overlap/source.h"
 
 enum { MEMBERS = 100, MEMBERS_QUICK = 10, MEMBERS_SLOW = 3 };
 static const double SLOW_PAIR = 1e-3; // seconds
@@ -188,6 +189,13 @@ static void ask_standard(const Asked *asked, AppStressRow *row) {
   app_stress_ask_most(row, "missed", worst->missed, 0);
 }
 
+// Of a model of which nothing is promised: how much it changes where it should not.
+static void tell_changes(const Asked *asked, AppStressRow *row) {
+  const AppStressPairErrors *worst = &asked->worst;
+  app_stress_ask_most(row, "order", worst->order, worst->order);
+  app_stress_ask_most(row, "motion", worst->motion, worst->motion);
+}
+
 static void ask_tolerance(const Asked *asked, const AppStressPairErrors *most, AppStressRow *row) {
   const AppStressPairErrors *worst = &asked->worst;
   app_stress_ask_most(row, "volume", worst->volume, most->volume);
@@ -214,6 +222,7 @@ static void judge_class(const Asked *asked, AppStressRow *row) {
     ask_standard(asked, row);
   else
     ask_tolerance(asked, &own->most, row);
+  if (!is_held && !own) tell_changes(asked, row);
   app_stress_judge(row);
   if (is_held || row->outcome != APP_STRESS_HELD) return;
   row->outcome = APP_STRESS_TOLERANCE;
@@ -304,12 +313,13 @@ static Status run_model(const AppStressOptions *options, AppStress *stress, cons
   return status;
 }
 
-static Status run_files(const AppStressOptions *options, AppStress *stress, char *models) {
+static Status run_sources(const AppStressOptions *options, AppStress *stress, char *models) {
   const char *sources[APP_STRESS_MAX_MODELS];
   char path[PATH_MAX];
   int words = text_split(models, sources, APP_STRESS_MAX_MODELS), count = 0;
   for (int w = 0; w < words; w++)
-    if (app_model_names_locate(sources[w], path)) sources[count++] = sources[w];
+    if (app_model_names_locate(sources[w], path) || overlap_source_is_foreign(sources[w]))
+      sources[count++] = sources[w];
   stress->names = memory_zeroed((size_t)count + 1, sizeof *stress->names);
   if (!stress->names) return status_no_memory("the models");
   TRY(app_model_names_find(count, sources, stress->names));
@@ -326,7 +336,7 @@ Status app_stress_pairs_run(const AppStressOptions *options, AppStress *stress) 
   }
   if (!options->models) return STATUS_OK;
   char *words = memory_copy(options->models, strlen(options->models) + 1, 1);
-  Status status = words ? run_files(options, stress, words) : status_no_memory("the models");
+  Status status = words ? run_sources(options, stress, words) : status_no_memory("the models");
   memory_free(words);
   return status;
 }
