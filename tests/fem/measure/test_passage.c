@@ -145,6 +145,36 @@ START_TEST(what_slides_does_not_pass) {
 }
 END_TEST
 
+// A cube that slides over the top of a large ball, in units of which the metre has `unit`.
+static double slide_over_a_ball(double unit) {
+  SceneRun run;
+  char texts[6][200];
+  snprintf(texts[0], sizeof texts[0], "bodies.cube.place={scale: %g, translate: [%g, %g, %g]}", unit,
+           -0.1 * unit, -0.1 * unit, 0.002 * unit);
+  snprintf(texts[1], sizeof texts[1], "bodies.cube.material={young: %g, poisson: 0.3, density: %g}",
+           1e5 / unit, 1e3 / (unit * unit * unit));
+  snprintf(texts[2], sizeof texts[2], "bodies.cube.velocity=[%g, 0, 0]", unit);
+  snprintf(texts[3], sizeof texts[3], "effects.gravity=[0, 0, %g]", -10 * unit);
+  snprintf(texts[4], sizeof texts[4], "obstacles=[{name: ball, sphere: {centre: [0, 0, %g], radius: %g}}]",
+           -2 * unit, 2 * unit);
+  snprintf(texts[5], sizeof texts[5], "bodies.cube.mesh.box.cells=[3, 3, 3]");
+  run_without_passage(&run, "obstacle_shapes",
+                      (const char *const[]){texts[0], texts[1], texts[2], texts[3], texts[4], texts[5],
+                                            "contact.friction=0.3", NULL});
+  ck_assert_int_eq((int)run.result.trouble.of[FEM_TROUBLE_ENCLOSED].steps, 0);
+  ck_assert_str_eq(fem_run_outcome(&run.result, run.status), "finished");
+  double way = scene_position(&run, run.result.trajectory.frame_count - 1, 0)[0] - run.model.rest[0];
+  scene_close(&run);
+  return way / unit;
+}
+
+START_TEST(what_slides_over_a_ball_does_not_pass_in_any_unit) {
+  double way = slide_over_a_ball(1);
+  ck_assert_double_gt(way, 0.05);
+  ck_assert_near(slide_over_a_ball(1000), way, 1e-3 * way);
+}
+END_TEST
+
 // A ball that turns over: the vertex that was its top comes to lie lower than its middle.
 START_TEST(what_rolls_does_not_pass) {
   SceneRun run;
@@ -198,6 +228,7 @@ int main(void) {
   tcase_add_test(cases, a_body_that_is_inverted_is_to_be_refined);
   tcase_add_test(cases, what_slides_does_not_pass);
   tcase_add_test(cases, what_rolls_does_not_pass);
+  tcase_add_test(cases, what_slides_over_a_ball_does_not_pass_in_any_unit);
   tcase_add_test(cases, what_sleeps_and_is_awakened_does_not_pass);
   tcase_add_test(cases, bodies_that_begin_inside_each_other_do_not_end_well);
   return suite_run("passage", cases, 60);
