@@ -10,6 +10,7 @@
 #include "contact/footprint.h"
 #include "contact/pressure/star_sink.h"
 #include "contact/rest.h"
+#include "contact/search/gap.h"
 #include "contact/search/near.h"
 #include "contact/shape/shape.h"
 #include "contact/status.h"
@@ -305,6 +306,13 @@ Status contact_system_trace(ContactSystem *system, const ContactEvaluation *eval
     contact_trace_add(layout, &system->stars, evaluation, NULL, pulls, system->traces);
   contact_trace_find(count, system->traces, result);
   return STATUS_OK;
+}
+
+void contact_system_gaps(ContactSystem *system, const ContactEvaluation *evaluation, double *gaps) {
+  for (int v = 0; v < system->stars.given_vertex_count; v++) gaps[v] = INFINITY;
+  if (contact_layout_has_field(&system->layout))
+    contact_gap_find(&system->candidates, &system->layout, &system->stars, evaluation->time,
+                     evaluation->positions, gaps);
 }
 
 int contact_system_origin(const ContactSystem *system, int tet) {

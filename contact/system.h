@@ -115,6 +115,11 @@ Status contact_system_couple(ContactSystem *system, const ContactEvaluation *eva
 // potential than `field` zeros.
 Status contact_system_trace(ContactSystem *system, const ContactEvaluation *evaluation,
                             const double (*pulls)[3], const ContactTraceResult *result);
+// How far the given vertices of a surface are from what they may touch, by contact/search/gap.h [m];
+// INFINITY: nothing is near, or what is near is at rest, too. With another potential than `field` all are
+// INFINITY.
+void contact_system_gaps(ContactSystem *system, const ContactEvaluation *evaluation, double *gaps);
+
 // The power that moving shapes put in [W]: ∂U/∂t at fixed positions.
 double contact_system_shape_power(const ContactSystem *system, const ContactEvaluation *evaluation);
 // The pairs of meshes with V > 0, as handed to the model (in general position), for audits. Owned by the

@@ -45,18 +45,18 @@ Status contact_stick_create(ContactStick *stick, int vertex_count, const double 
 }
 
 void contact_stick_destroy(ContactStick *stick) {
-  void *arrays[] = {stick->laws,   stick->pairs,  stick->nodes,         stick->touches, stick->order,
-                    stick->pulls,  stick->forces, stick->place,         stick->clique,  stick->outer,
-                    stick->shares, stick->areas,  stick->node_of_vertex};
+  void *arrays[] = {stick->laws,   stick->pairs,  stick->nodes,          stick->touches, stick->order,
+                    stick->pulls,  stick->forces, stick->place,          stick->clique,  stick->outer,
+                    stick->shares, stick->areas,  stick->node_of_vertex, stick->has_left};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
   *stick = (ContactStick){0};
 }
 
 size_t contact_stick_bytes(const ContactStick *stick) {
-  const void *const arrays[] = {stick->laws,          stick->pairs, stick->nodes,  stick->touches,
-                                stick->order,         stick->pulls, stick->forces, stick->place,
-                                stick->clique,        stick->outer, stick->shares, stick->areas,
-                                stick->node_of_vertex};
+  const void *const arrays[] = {stick->laws,           stick->pairs,   stick->nodes,  stick->touches,
+                                stick->order,          stick->pulls,   stick->forces, stick->place,
+                                stick->clique,         stick->outer,   stick->shares, stick->areas,
+                                stick->node_of_vertex, stick->has_left};
   return memory_held_by(sizeof arrays / sizeof *arrays, arrays);
 }
 
@@ -211,8 +211,17 @@ static Vec3 keep_energy(double energy, double k, Vec3 stretch) {
   return stored > 0 ? vec3_scale(sqrt(energy / stored), stretch) : stretch;
 }
 
+// `cut`: the way that it slides since then; `spent`: what that dissipates.
+static void remember_slip(const ContactStickEntry *entry, Vec3 cut, double spent, ContactStickNode *node) {
+  Vec3 kept = entry ? times(node->deformation, vec3_at(entry->slip)) : (Vec3){0, 0, 0};
+  vec3_store(node->slid, vec3_add(kept, cut));
+  node->way = (entry ? entry->way : 0) + vec3_length(cut);
+  node->work = (entry ? entry->work : 0) + spent;
+}
+
 // From the history to the force of a node; returns what it dissipates since then.
-static double return_radially(const ContactStickHistory *history, ContactStickNode *node) {
+static double return_radially(ContactStick *stick, const ContactStickHistory *history,
+                              ContactStickNode *node) {
   const ContactStickEntry *entry = contact_stick_history_find(history, node->interface, node->vertex);
   Vec3 kept = entry ? vec3_at(entry->stretch) : (Vec3){0, 0, 0};
   double before = entry ? entry->energy : 0, limit = entry ? entry->limit : 0,
@@ -234,8 +243,11 @@ static double return_radially(const ContactStickHistory *history, ContactStickNo
   node->trial = length;
   vec3_store(node->stretch, stretch);
   vec3_store(node->force, vec3_scale(-k, stretch));
-  double cut = node->slips ? 0.5 * (limit + node->limit) * (1 - kept_share) * length : 0;
-  return before - 0.5 * k * vec3_dot(carried, carried) + cut;
+  double cut = node->slips ? 0.5 * (limit + node->limit) * (1 - kept_share) * length : 0,
+         spent = before - 0.5 * k * vec3_dot(carried, carried) + cut;
+  remember_slip(entry, vec3_scale(1 - kept_share, trial), spent, node);
+  if (entry) stick->has_left[entry - history->entries] = false;
+  return spent;
 }
 
 static bool rests(const ContactStickEntry *entry, const bool *is_resting) {
@@ -281,17 +293,30 @@ static void share_forces(ContactStick *stick, const ContactStickHistory *history
   }
 }
 
-// What sticks and what slides, k_a / c_t of the vertices. Where the press grows a little, what slides sticks
-// for a step at nearly all of its limit: that counts as sliding.
+// Where the press grows a little, what slides sticks for a step at nearly all of its limit: that counts as
+// sliding.
+bool contact_stick_slides(const ContactStickNode *node) {
+  return vec3_length(vec3_at(node->force)) >= SLIDES_FROM * node->limit;
+}
+
+// What sticks and what slides, k_a / c_t of the vertices.
 static void share_areas(ContactStick *stick, const ContactStickHistory *history, const bool *is_resting) {
   for (int i = 0; i < stick->interface_count; i++)
     for (int k = 0; k < 2; k++) stick->areas[i][k] = is_resting && is_resting[i] ? history->areas[i][k] : 0;
   for (int n = 0; n < stick->node_count; n++) {
     const ContactStickNode *node = &stick->nodes[n];
-    double pull = vec3_length(vec3_at(node->force));
-    stick->areas[node->interface][pull > SLIDES_FROM * node->limit] +=
+    stick->areas[node->interface][contact_stick_slides(node)] +=
         node->stiffness / stick->laws[node->interface].stiffness;
   }
+}
+
+// All have left but those that are met.
+static Status expect_left(ContactStick *stick, const ContactStickHistory *history) {
+  size_t count = (size_t)history->entry_count;
+  if (!memory_reserve((void **)&stick->has_left, &stick->left_capacity, count, sizeof *stick->has_left))
+    return status_no_memory("friction");
+  for (size_t i = 0; i < count; i++) stick->has_left[i] = true;
+  return STATUS_OK;
 }
 
 Status contact_stick_eval(ContactStick *stick, const ContactStickLast *last, int pair_count,
@@ -301,12 +326,13 @@ Status contact_stick_eval(ContactStick *stick, const ContactStickLast *last, int
   TRY(contact_stick_reserve(stick, pair_count));
   gather(stick, last, positions);
   order_touches(stick);
+  TRY(expect_left(stick, history));
   stick->slip_count = 0;
   stick->spent = energy_of_left(stick, history, is_resting);
   stick->stored = energy_at_rest(history, is_resting);
   for (int n = 0; n < stick->node_count; n++) {
     ContactStickNode *node = &stick->nodes[n];
-    stick->spent += return_radially(history, node);
+    stick->spent += return_radially(stick, history, node);
     stick->stored += 0.5 * node->stiffness * vec3_dot(vec3_at(node->stretch), vec3_at(node->stretch));
     stick->slip_count += node->slips;
   }
@@ -402,15 +428,19 @@ Status contact_stick_couple(ContactStick *stick, void *visitor,
 // ---- Accepting.
 
 static bool is_kept(const ContactStickNode *node) {
-  return node->limit > 0;
+  return node->limit > 0 || node->work > 0;
 }
 
-size_t contact_stick_next_count(const ContactStick *stick, const ContactStickHistory *history,
-                                const bool *is_resting) {
-  int entries = 0;
-  for (int i = 0; i < history->entry_count; i++) entries += rests(&history->entries[i], is_resting);
-  for (int n = 0; n < stick->node_count; n++) entries += is_kept(&stick->nodes[n]);
-  return contact_stick_history_count(stick->interface_count, entries);
+// What stays of an entry without a node: all of one at rest; what was done so far of one that has left, which
+// loses its spring.
+static bool keep_entry(const ContactStickEntry *entry, bool is_resting, ContactStickEntry *kept) {
+  *kept = *entry;
+  if (is_resting) return true;
+  *kept = (ContactStickEntry){.interface = entry->interface,
+                              .vertex = entry->vertex,
+                              .way = entry->way,
+                              .work = entry->work + entry->energy};
+  return kept->work > 0;
 }
 
 static ContactStickEntry entry_of(const ContactStickNode *node) {
@@ -418,9 +448,38 @@ static ContactStickEntry entry_of(const ContactStickNode *node) {
   ContactStickEntry entry = {.interface = node->interface,
                              .vertex = node->vertex,
                              .energy = 0.5 * node->stiffness * vec3_dot(stretch, stretch),
-                             .limit = node->limit};
+                             .limit = node->limit,
+                             .slides = contact_stick_slides(node),
+                             .way = node->way,
+                             .work = node->work};
   vec3_store(entry.stretch, divide(node->deformation, stretch));
+  vec3_store(entry.slip, divide(node->deformation, vec3_at(node->slid)));
+  vec3_store(entry.slid, vec3_at(node->slid));
   return entry;
+}
+
+// Writes the entries of the next history; how many. NULL: counts them.
+static int list_entries(const ContactStick *stick, const ContactStickHistory *history, const bool *is_resting,
+                        ContactStickEntry *entries) {
+  int count = 0;
+  for (int i = 0; i < history->entry_count; i++) {
+    ContactStickEntry kept;
+    const ContactStickEntry *entry = &history->entries[i];
+    if (!stick->has_left[i] || !keep_entry(entry, rests(entry, is_resting), &kept)) continue;
+    if (entries) entries[count] = kept;
+    count++;
+  }
+  for (int n = 0; n < stick->node_count; n++) {
+    if (!is_kept(&stick->nodes[n])) continue;
+    if (entries) entries[count] = entry_of(&stick->nodes[n]);
+    count++;
+  }
+  return count;
+}
+
+size_t contact_stick_next_count(const ContactStick *stick, const ContactStickHistory *history,
+                                const bool *is_resting) {
+  return contact_stick_history_count(stick->interface_count, list_entries(stick, history, is_resting, NULL));
 }
 
 void contact_stick_advance(const ContactStick *stick, const ContactStickHistory *history,
@@ -430,10 +489,6 @@ void contact_stick_advance(const ContactStick *stick, const ContactStickHistory 
   *next.dissipated = *history->dissipated + stick->spent;
   memcpy(next.forces, stick->forces, (size_t)stick->interface_count * sizeof *next.forces);
   memcpy(next.areas, stick->areas, (size_t)stick->interface_count * sizeof *next.areas);
-  int entries = 0;
-  for (int i = 0; i < history->entry_count; i++)
-    if (rests(&history->entries[i], is_resting)) next.entries[entries++] = history->entries[i];
-  for (int n = 0; n < stick->node_count; n++)
-    if (is_kept(&stick->nodes[n])) next.entries[entries++] = entry_of(&stick->nodes[n]);
+  list_entries(stick, history, is_resting, next.entries);
   contact_stick_history_sort(&next);
 }

@@ -20,6 +20,7 @@
 //   force     Σ_a (w/W) T_a on the pair, at x̄: by λ on A's vertices, its opposite on B's
 //   matrix    D_a ⊗ ω ωᵀ,  ω = Σ (w/W)(λ_A, −λ_B);   D = k P in stick, μN/|s_trial| (P − ŝŝᵀ) in slip
 //   accepted  S_a ← F_a⁻¹ s;   dissipated += mean of μN_a then and now · length cut off
+//   slid      G_a ← F_a⁻¹ (F_a G_a + s_trial − s), the way of the slave against the other; lengths add up
 //
 // Δ is zero to rounding in any common rigid motion and telescopes; only increments are averaged. Force and
 // torque balance pair by pair. The matrix is positive semidefinite; the derivatives of N, n and the weights
@@ -68,6 +69,9 @@ typedef struct ContactStickNode {
   double gap[3];         // Δ_a, then s_trial [m]
   double trial;          // |s_trial| [m]
   double stretch[3];     // s [m]
+  double slid[3];        // F_a G_a, since it was last touched [m]
+  double way;            // Σ |s_trial − s| so far [m]
+  double work;           // dissipated at it so far [J]
   bool slips;
   bool advances; // the way since the last accepted state goes along s_trial
 } ContactStickNode;
@@ -100,6 +104,7 @@ typedef struct ContactStick {
   double (*pulls)[3];                 // on side 0 of each pair [N]               (pair_count)
   double (*forces)[3];  // on side 0 of each interface [N]; of one at rest as it was   (interface_count)
   double (*areas)[2];   // that stick and that slide [m²]; likewise                    (interface_count)
+  bool *has_left;       // each entry of the history: it has no node   (entry_count)
   double stored, spent; // ½ Σ k s², and dissipated since the last accepted state [J]
   int slip_count;
   // Scratch memory.
@@ -108,7 +113,7 @@ typedef struct ContactStick {
   int *clique;
   double *shares, *outer;
   size_t pair_capacity, node_capacity, touch_capacity, order_capacity, pull_capacity;
-  size_t clique_capacity, share_capacity, outer_capacity;
+  size_t clique_capacity, share_capacity, outer_capacity, left_capacity;
 } ContactStick;
 
 // The laws are copied. STATUS_INPUT: a μ, stiffness or weight that makes no sense. A zeroed stick, and one
@@ -126,6 +131,9 @@ Status contact_stick_reserve(ContactStick *stick, int pair_count);
 // forces and areas.
 Status contact_stick_eval(ContactStick *stick, const ContactStickLast *last, int pair_count,
                           const double *positions, const bool *is_resting);
+
+// Whether it counts as sliding, not sticking: its pull is 0.98 of its limit or more.
+bool contact_stick_slides(const ContactStickNode *node);
 
 // Of the last evaluation.
 // By the vertices as given: (vertex_count, 3) without stars.

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { ENTRY_SIZE = sizeof(ContactStickEntry) / sizeof(double), INTERFACE_SIZE = 3 + 2 };
+enum { INTERFACE_SIZE = 3 + 2, ENTRY_SIZE = CONTACT_STICK_ENTRY_SIZE };
 
 size_t contact_stick_history_count(int interface_count, int entry_count) {
   return 1 + INTERFACE_SIZE * (size_t)interface_count + ENTRY_SIZE * (size_t)entry_count;

@@ -5,7 +5,7 @@
 //
 //   dissipated [J]
 //   forces [N] on side 0, areas [m²] that stick and that slide    (interface_count, 3), (interface_count, 2)
-//   entries, by interface, then by vertex                         (entry_count, 7)
+//   entries, by interface, then by vertex                         (entry_count, CONTACT_STICK_ENTRY_SIZE)
 #ifndef TETLAP_CONTACT_STICK_HISTORY_H
 #define TETLAP_CONTACT_STICK_HISTORY_H
 
@@ -14,13 +14,21 @@
 
 #include "base/status.h"
 
-// A vertex of a slave body that was pressed in the last accepted state.
+// A vertex of a slave body that was pressed in the last accepted state, or in an earlier one: of one that has
+// left only `way` and `work` are not 0.
 typedef struct ContactStickEntry {
   double interface, vertex; // their numbers
   double stretch[3];        // S_a, in the rest frame [m]
   double energy;            // ½ k_a s² as it was stored [J]
   double limit;             // μ N_a then [N]
+  double slides;            // 1: at its limit; 0: it sticks, or has left
+  double slip[3];           // slid since it was last touched, in the rest frame [m]
+  double slid[3];           // the same in space, as it lay then [m]
+  double way;               // Σ of the lengths slid so far [m]
+  double work;              // dissipated at it so far [J]
 } ContactStickEntry;
+
+enum { CONTACT_STICK_ENTRY_SIZE = sizeof(ContactStickEntry) / sizeof(double) };
 
 // A view of such an array.
 typedef struct ContactStickHistory {

@@ -121,14 +121,13 @@ static void add_side(const ContactLayout *layout, const ContactStars *stars,
   }
 }
 
-// The vertices that a side has for its own; their forces are summed up.
+// The vertices of a side that stand for given ones; their forces are summed up.
 static void face_side(const ContactLayout *layout, const ContactStars *stars,
                       const ContactEvaluation *evaluation, int k, int side, ContactTrace *traces) {
   const int *vertices = contact_layout_vertices(layout, evaluation->pairs[k].cells[side]);
   for (int v = 0; v < 4; v++) {
-    double weight;
-    if (layout->mesh.depths[vertices[v]] > 0 || carrier_count(stars, vertices[v]) != 1) continue;
-    int given = carrier(stars, vertices[v], 0, &weight);
+    int given = contact_stars_given(stars, vertices[v]);
+    if (layout->mesh.depths[vertices[v]] > 0 || given < 0) continue;
     ContactTrace *trace = &traces[given];
     if (!(trace->pressed > 0) || (trace->is_faced && trace->gap == 0)) continue;
     Vec3 x = place_of(stars, evaluation, given);

@@ -113,6 +113,12 @@ bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout
   return true;
 }
 
+double contact_candidates_reach(const ContactCandidates *candidates, const ContactLayout *layout,
+                                int interface) {
+  return candidates->list.margins[interface] -
+         contact_motion_approach(candidates->motions, &layout->interfaces[interface]);
+}
+
 // Half of the margin is used up, or the next step might use up the rest. The latter cannot be helped by a
 // search right after the last one, unless nothing was near and the margin may grow.
 static bool wants_search(const ContactCandidates *candidates, const ContactLayout *layout) {

@@ -65,6 +65,11 @@ void contact_candidates_leave_out(ContactCandidates *candidates, const ContactLa
 bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout *layout, double time,
                               const double *positions);
 
+// At the positions that contact_candidates_cover was asked for last: how near two of an interface may be at
+// most so that the list is sure to hold them [m].
+double contact_candidates_reach(const ContactCandidates *candidates, const ContactLayout *layout,
+                                int interface);
+
 // The boxes of the list's tetrahedra at these positions, into boxes (cell_count); others are
 // left alone.
 void contact_candidates_bound(const ContactCandidateList *list, const ContactLayout *layout,

@@ -404,7 +404,10 @@ static Status finish(Work *work) {
   ContactSystemDef *def = &stars->def;
   def->vertex_count = work->vertex_count, def->tet_count = work->tet_count;
   stars->rest = memory_zeroed((size_t)work->vertex_count, 3 * sizeof(double));
-  if (!stars->rest) return no_memory();
+  stars->given = memory_zeroed((size_t)work->vertex_count, sizeof *stars->given);
+  if (!stars->rest || !stars->given) return no_memory();
+  for (int v = 0; v < work->vertex_count; v++) stars->given[v] = -1;
+  for (int v = 0; v < given->vertex_count; v++) stars->given[stars->place[v]] = v;
   contact_stars_place(stars, given->rest, stars->rest);
   def->rest = stars->rest, def->bodies = stars->bodies, def->heights = stars->heights;
   def->inner = given->inner ? stars->inner : NULL;
@@ -469,8 +472,8 @@ Status contact_stars_create(ContactStars *stars, const ContactSystemDef *def) {
 }
 
 void contact_stars_destroy(ContactStars *stars) {
-  void *arrays[] = {stars->bodies,  stars->rest,  stars->inner, stars->tets,  stars->origin, stars->heights,
-                    stars->is_star, stars->place, stars->begin, stars->nodes, stars->weights};
+  void *arrays[] = {stars->bodies,  stars->rest,  stars->inner, stars->tets,  stars->origin,  stars->heights,
+                    stars->is_star, stars->place, stars->begin, stars->nodes, stars->weights, stars->given};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
   *stars = (ContactStars){0};
 }
@@ -478,7 +481,7 @@ void contact_stars_destroy(ContactStars *stars) {
 size_t contact_stars_bytes(const ContactStars *stars) {
   const void *const arrays[] = {stars->bodies, stars->rest,    stars->inner,   stars->tets,
                                 stars->origin, stars->heights, stars->is_star, stars->place,
-                                stars->begin,  stars->nodes,   stars->weights};
+                                stars->begin,  stars->nodes,   stars->weights, stars->given};
   return memory_held_by(sizeof arrays / sizeof *arrays, arrays);
 }
 

@@ -37,6 +37,7 @@ typedef struct ContactStars {
   bool *is_star; //                                                                      (def.tet_count)
   int given_vertex_count, given_tet_count;
   int *place; // of a given vertex among those of `def`                                  (given_vertex_count)
+  int *given; // the given vertex whose place it is; −1: none                            (def.vertex_count)
   // The given vertices that a vertex follows: begin[v] … begin[v + 1] of nodes, weights.
   int *begin; //                                                                    (def.vertex_count + 1)
   int *nodes; //                                                                    (begin[def.vertex_count])
@@ -64,6 +65,11 @@ void contact_stars_cover(const ContactStars *stars, const double *covered, const
 // Copies the value of the first eighth of each star to all eight; by given tetrahedra. Without stars:
 // nothing.
 void contact_stars_spread(const ContactStars *stars, int *values);
+
+// The given vertex whose place a vertex of `def` is; −1: none.
+static inline int contact_stars_given(const ContactStars *stars, int vertex) {
+  return stars->is_needed ? stars->given[vertex] : vertex;
+}
 
 size_t contact_stars_bytes(const ContactStars *stars); // on the heap
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/output/forces.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -22,6 +23,16 @@ static size_t values_of(const FemForces *forces) {
   return 3 * (size_t)forces->system->model->vertex_count;
 }
 
+static Status create_slip(FemForces *forces) {
+  size_t vertices = (size_t)forces->system->model->vertex_count;
+  forces->slip = memory_zeroed(values_of(forces), sizeof *forces->slip);
+  forces->way = memory_zeroed(vertices, sizeof *forces->way);
+  forces->work = memory_zeroed(vertices, sizeof *forces->work);
+  forces->stuck = memory_zeroed(vertices, sizeof *forces->stuck);
+  return forces->slip && forces->way && forces->work && forces->stuck ? STATUS_OK
+                                                                      : status_no_memory("the slip");
+}
+
 static Status create_of_vertices(FemForces *forces, bool has_friction) {
   const FemModel *model = forces->system->model;
   size_t vertices = (size_t)model->vertex_count;
@@ -32,8 +43,11 @@ static Status create_of_vertices(FemForces *forces, bool has_friction) {
   forces->pressure = memory_zeroed(vertices, sizeof *forces->pressure);
   forces->depth = memory_zeroed(vertices, sizeof *forces->depth);
   forces->traction = memory_zeroed(values_of(forces), sizeof *forces->traction);
-  return forces->pressure && forces->depth && forces->traction ? STATUS_OK
-                                                               : status_no_memory("the contact forces");
+  forces->gap = memory_zeroed(vertices, sizeof *forces->gap);
+  forces->status = memory_zeroed(vertices, sizeof *forces->status);
+  if (!forces->pressure || !forces->depth || !forces->traction || !forces->gap || !forces->status)
+    return status_no_memory("the contact forces");
+  return has_friction ? create_slip(forces) : STATUS_OK;
 }
 
 Status fem_forces_create(FemForces *forces, const FemSystem *system, bool with_vertices) {
@@ -62,6 +76,12 @@ void fem_forces_destroy(FemForces *forces) {
   memory_free(forces->pressure);
   memory_free(forces->depth);
   memory_free(forces->traction);
+  memory_free(forces->gap);
+  memory_free(forces->status);
+  memory_free(forces->slip);
+  memory_free(forces->way);
+  memory_free(forces->work);
+  memory_free(forces->stuck);
   *forces = (FemForces){0};
 }
 
@@ -105,6 +125,37 @@ Status fem_forces_take(FemForces *forces, const FemState *state) {
   return STATUS_OK;
 }
 
+static Status take_slip(FemForces *forces, void *stick, const FemState *state) {
+  size_t vertices = (size_t)forces->system->model->vertex_count;
+  memset(forces->slip, 0, 3 * vertices * sizeof *forces->slip);
+  memset(forces->way, 0, vertices * sizeof *forces->way);
+  memset(forces->work, 0, vertices * sizeof *forces->work);
+  memset(forces->stuck, 0, vertices * sizeof *forces->stuck);
+  return fem_effect_stick_tell(stick, state,
+                               &(ContactStickTold){.weights = forces->stuck,
+                                                   .slips = (double(*)[3])forces->slip,
+                                                   .ways = forces->way,
+                                                   .works = forces->work});
+}
+
+// Without friction what touches slides.
+static FemContactStatus status_at(const FemForces *forces, int v) {
+  if (!(forces->pressure[v] > 0)) return FEM_CONTACT_OPEN;
+  if (!forces->stuck || forces->stuck[v][1] > forces->stuck[v][0]) return FEM_CONTACT_SLIDES;
+  return FEM_CONTACT_STICKS;
+}
+
+static void take_status(FemForces *forces, const ContactEvaluation *evaluation) {
+  contact_system_gaps(contact_of(forces->system), evaluation, forces->gap);
+  for (int v = 0; v < forces->system->model->vertex_count; v++) {
+    if (forces->depth[v] > 0) forces->gap[v] = -forces->depth[v];
+    if (!isfinite(forces->gap[v])) forces->gap[v] = NAN;
+    forces->status[v] = status_at(forces, v);
+    if (forces->slip && forces->status[v] == FEM_CONTACT_OPEN)
+      vec3_store(forces->slip + 3 * (size_t)v, (Vec3){0, 0, 0});
+  }
+}
+
 Status fem_forces_take_surface(FemForces *forces, const FemState *state) {
   void *stick = fem_system_effect(forces->system, &fem_effect_stick);
   const ContactEvaluation *evaluation;
@@ -112,9 +163,12 @@ Status fem_forces_take_surface(FemForces *forces, const FemState *state) {
   if (!forces->pressure) return STATUS_OK;
   TRY(fem_effect_contact_evaluate(forces->system, state, &evaluation));
   if (stick) TRY(fem_effect_stick_evaluate(stick, state, &law));
-  return contact_system_trace(contact_of(forces->system), evaluation,
-                              law ? (const double(*)[3])law->pulls : NULL,
-                              &(ContactTraceResult){.pressures = forces->pressure,
-                                                    .depths = forces->depth,
-                                                    .tractions = (double(*)[3])forces->traction});
+  TRY(contact_system_trace(contact_of(forces->system), evaluation,
+                           law ? (const double(*)[3])law->pulls : NULL,
+                           &(ContactTraceResult){.pressures = forces->pressure,
+                                                 .depths = forces->depth,
+                                                 .tractions = (double(*)[3])forces->traction}));
+  if (stick) TRY(take_slip(forces, stick, state));
+  take_status(forces, evaluation);
+  return STATUS_OK;
 }

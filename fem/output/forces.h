@@ -27,7 +27,15 @@ typedef struct FemForces {
   double *pressure; // at the surface [Pa]; NULL: not wanted, or the potential has none   (vertex_count)
   double *depth;    // likewise [m]                                (vertex_count)
   double *traction; // likewise, friction included [Pa]            (vertex_count, 3)
+  double *gap;      // likewise, from the next body or obstacle [m]: −depth where pressed; NaN: none is near
+  int *status;      // likewise, a FemContactStatus                (vertex_count)
+  double *slip;     // likewise, slid since it was last touched [m]; NULL: no friction    (vertex_count, 3)
+  double *way;      // likewise, the length slid so far [m]        (vertex_count)
+  double *work;     // dissipated there by friction so far [J]     (vertex_count)
+  double (*stuck)[2]; // scratch: what sticks and slides [N]       (vertex_count)
 } FemForces;
+
+typedef enum FemContactStatus { FEM_CONTACT_OPEN, FEM_CONTACT_STICKS, FEM_CONTACT_SLIDES } FemContactStatus;
 
 // With forces of vertices, or of interfaces alone. Without contact all is NULL. A zeroed one, and one whose
 // creation failed, can be destroyed.

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/vec3.h"
-#include "contact/friction/stick.h"
+#include "contact/friction/stick_told.h"
 
 static const double MU = 0.5, STIFFNESS = 2e4; // [Pa/m]
 static const double AREA = 0.03, PRESS = 12;   // [m²], [N]
@@ -387,8 +387,109 @@ START_TEST(what_lifts_off_loses_its_spring) {
   ck_assert_near(f->stick.spent, stored, 1e-12 * stored);
   ck_assert_near(f->stick.stored, 0, 0);
   accept(f);
-  ck_assert_int_eq(history_of(f).entry_count, 0);
   ck_assert_near(*history_of(f).dissipated, stored, 1e-12 * stored);
+  for (int e = 0; e < history_of(f).entry_count; e++) {
+    ck_assert_double_eq(history_of(f).entries[e].energy, 0);
+    ck_assert_double_eq(history_of(f).entries[e].limit, 0);
+  }
+  finish(f);
+}
+END_TEST
+
+typedef struct Sums {
+  double weights[8][2], slips[8][3], ways[8], works[8];
+  double work; // of all vertices
+} Sums;
+
+// What is told at the state that was evaluated last.
+static void tell(const Fixture *f, const bool *is_resting, Sums *sums) {
+  static const double DEPTHS[8] = {0};
+  const ContactStickHistory history = history_of(f);
+  *sums = (Sums){0};
+  contact_stick_tell(
+      &f->stick, &history, is_resting, DEPTHS,
+      &(ContactStickTold){
+          .weights = sums->weights, .slips = sums->slips, .ways = sums->ways, .works = sums->works});
+  for (int v = 0; v < 8; v++) sums->work += sums->works[v];
+}
+
+// There and back by more than the spring bears: the way is twice as long as the slip is short, and what the
+// vertices dissipated is what the law did.
+START_TEST(slip_way_and_work_are_told_at_the_vertices_of_the_slave) {
+  Fixture *f = start(1, true);
+  Sums sums;
+  double way = 0.05, elastic = MU * PRESS / (STIFFNESS * AREA);
+  shift(f, 0, way, 0, 0);
+  f->meet[0] += way; // the same of A touches
+  eval(f);
+  tell(f, NULL, &sums);
+  ck_assert_near(sums.work, f->stick.spent, 1e-12 * f->stick.spent);
+  for (int v = 0; v < 8; v++) {
+    ck_assert_near(sums.ways[v], v < 4 ? way - elastic : 0, 1e-12);
+    ck_assert_near(sums.slips[v][0], v < 4 ? way - elastic : 0, 1e-12);
+    ck_assert_double_gt(sums.weights[v][1], 0); // both sides slide
+    ck_assert_double_eq(sums.weights[v][0], 0);
+  }
+  accept(f);
+  shift(f, 0, -way, 0, 0);
+  f->meet[0] -= way;
+  eval(f);
+  tell(f, NULL, &sums);
+  ck_assert_near(sums.ways[0], 2 * way - 3 * elastic, 1e-12);
+  ck_assert_near(sums.slips[0][0], elastic, 1e-12);
+  ck_assert_near(sums.work, *history_of(f).dissipated + f->stick.spent, 1e-12 * sums.work);
+  finish(f);
+}
+END_TEST
+
+// What has left keeps its way and its work, with what its spring had stored; what comes back begins its slip
+// anew.
+START_TEST(way_and_work_outlast_the_contact_and_slip_does_not) {
+  Fixture *f = start(1, true);
+  Sums sums;
+  double way = 0.05, elastic = MU * PRESS / (STIFFNESS * AREA);
+  shift(f, 0, way, 0, 0);
+  eval(f);
+  accept(f);
+  eval_pairs(f, 0, NULL);
+  for (int k = 0; k < 3; k++) {
+    tell(f, NULL, &sums);
+    ck_assert_near(sums.work, *history_of(f).dissipated + f->stick.spent, 1e-12 * sums.work);
+    ck_assert_near(sums.ways[0], way - elastic, 1e-12);
+    ck_assert_near(sums.slips[0][0], 0, 0);
+    accept(f);
+    eval_pairs(f, 0, NULL);
+  }
+  ck_assert_int_eq(history_of(f).entry_count, 4);
+  eval(f);
+  tell(f, NULL, &sums);
+  ck_assert_near(sums.slips[0][0], 0, 1e-12);
+  ck_assert_near(sums.ways[0], way - elastic, 1e-12);
+  ck_assert_near(sums.work, *history_of(f).dissipated + f->stick.spent, 1e-12 * sums.work);
+  finish(f);
+}
+END_TEST
+
+// The slip turns with the body, as the spring does.
+START_TEST(slip_turns_with_its_body_and_stays_at_rest) {
+  Fixture *f = start(1, true);
+  const bool is_resting = true;
+  Sums sums;
+  double R[9], way = 0.05, elastic = MU * PRESS / (STIFFNESS * AREA);
+  shift(f, 0, way, 0, 0);
+  eval(f);
+  accept(f);
+  make_rotation(1, R);
+  rotate(f, R);
+  eval(f);
+  tell(f, NULL, &sums);
+  Vec3 expected = turn(R, (const double[]){way - elastic, 0, 0});
+  ck_assert_near(vec3_length(vec3_sub(vec3_at(sums.slips[0]), expected)), 0, 1e-12);
+  accept(f);
+  eval_pairs(f, 0, &is_resting);
+  tell(f, &is_resting, &sums);
+  ck_assert_near(vec3_length(vec3_sub(vec3_at(sums.slips[0]), expected)), 0, 1e-12);
+  ck_assert_near(sums.work, *history_of(f).dissipated, 1e-12 * sums.work);
   finish(f);
 }
 END_TEST
@@ -446,6 +547,9 @@ int main(void) {
   tcase_add_test(test_case, a_history_that_is_copied_goes_on_to_the_bit);
   tcase_add_test(test_case, numbers_that_are_no_history_are_refused);
   tcase_add_test(test_case, what_lifts_off_loses_its_spring);
+  tcase_add_test(test_case, slip_way_and_work_are_told_at_the_vertices_of_the_slave);
+  tcase_add_test(test_case, way_and_work_outlast_the_contact_and_slip_does_not);
+  tcase_add_test(test_case, slip_turns_with_its_body_and_stays_at_rest);
   tcase_add_test(test_case, what_rests_keeps_its_history);
   tcase_add_test(test_case, a_way_in_many_steps_dissipates_as_much_as_in_one);
   return suite_run("stick", test_case, 30);

@@ -201,3 +201,13 @@ Status fem_effect_stick_evaluate(void *effect, const FemState *state, const Cont
   *law = &stick->law;
   return evaluate(stick, state, &evaluation);
 }
+
+Status fem_effect_stick_tell(void *effect, const FemState *state, const ContactStickTold *told) {
+  Stick *stick = effect;
+  const ContactEvaluation *evaluation;
+  TRY(evaluate(stick, state, &evaluation));
+  const ContactStickHistory history = history_of(stick, state->last);
+  contact_stick_tell(&stick->law, &history, stick->is_resting,
+                     contact_system_layout(stick->contact)->mesh.depths, told);
+  return STATUS_OK;
+}

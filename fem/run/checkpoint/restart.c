@@ -168,7 +168,8 @@ static int *match_interfaces(const FemCheckpoint *checkpoint, const FemSystem *s
   return numbers;
 }
 
-// The entries of vertices whose interface is there in this scene, too; what was dissipated counts anew.
+// The entries of vertices whose interface is there in this scene, too; what was slid and dissipated counts
+// anew.
 static Status remember_stick(const FemCheckpoint *checkpoint, const FemCheckpointEffect *saved,
                              FemSystem *system, int place) {
   int was_count, is_count = interface_count(system), kept = 0;
@@ -190,7 +191,9 @@ static Status remember_stick(const FemCheckpoint *checkpoint, const FemCheckpoin
       const int number = numbers[(int)was.entries[e].interface];
       if (number < 0) continue;
       is.entries[k] = was.entries[e];
-      is.entries[k++].interface = number;
+      is.entries[k].interface = number;
+      is.entries[k].way = is.entries[k].work = 0;
+      k++;
     }
     contact_stick_history_sort(&is);
   }

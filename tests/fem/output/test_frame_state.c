@@ -397,9 +397,137 @@ START_TEST(where_all_slides_the_traction_has_mu_times_the_pressure) {
 }
 END_TEST
 
+// Of the last frame of a scene that was run into the folder; the caller closes both.
+static void run_to_last_frame(SceneRun *run, const char *scene, const char *const *overrides,
+                              FemVtuContent *frame) {
+  char path[96];
+  open_folder();
+  scene_open(run, scene, overrides);
+  FemRunOptions options = {.directory = folder};
+  ck_assert_ok(fem_run(&run->model, &options, &run->result));
+  path_of_frame(run->scene.frames, path);
+  ck_assert_ok(fem_vtu_read(path, frame));
+}
+
+static void close_last_frame(SceneRun *run, FemVtuContent *frame) {
+  fem_vtu_read_destroy(frame);
+  scene_close(run);
+  remove_folder();
+}
+
+// The last row's number in that column.
+static double last_value(const char *name) {
+  char *text = read_history(), *next, *row = strtok_r(text, "\n", &next), *last = row;
+  int column = column_of(row, name);
+  while ((row = strtok_r(NULL, "\n", &next)) != NULL) last = row;
+  double value = value_at(last, column);
+  memory_free(text);
+  return value;
+}
+
+// A block is dragged by 16 mm along x: what its vertices say is what the run counts.
+START_TEST(friction_work_of_vertices_is_the_work_of_the_run) {
+  SceneRun run;
+  FemVtuContent frame;
+  run_to_last_frame(&run, "drag", (const char *const[]){"output.vtu=true", "output.frames=20", NULL}, &frame);
+  const double *work = find_field(&frame, "friction_work"), *way = find_field(&frame, "slip_way"),
+               *slip = find_field(&frame, "slip"), *status = find_field(&frame, "contact_status"),
+               *pressure = find_field(&frame, "contact_pressure"),
+               *depth = find_field(&frame, "contact_depth"), *gap = find_field(&frame, "contact_gap");
+  double sum = 0, dissipated = last_value("dissipated_J");
+  int sliding = 0, base = run.model.bodies[1].vertex_begin;
+  for (int v = 0; v < run.model.vertex_count; v++) {
+    sum += work[v];
+    ck_assert_double_eq(status[v], pressure[v] > 0 ? 2 : 0);
+    if (depth[v] > 0) ck_assert_double_eq(gap[v], -depth[v]);
+    if (v >= base) ck_assert_double_eq(way[v], 0); // the slider is the slave
+    if (v >= base || status[v] == 0) continue;
+    ck_assert_near(slip[3 * v], 0.016, 0.02 * 0.016); // but for the shear of the slider
+    ck_assert_near(way[v], 0.016, 0.02 * 0.016);
+    sliding++;
+  }
+  ck_assert_int_eq(sliding, 16);
+  ck_assert_double_gt(dissipated, 0);
+  ck_assert_near(sum, dissipated, 1e-9 * dissipated);
+  close_last_frame(&run, &frame);
+}
+END_TEST
+
+// What has not begun to slide sticks, on both sides, and has done no work by slip.
+START_TEST(what_does_not_slide_is_told_to_stick) {
+  SceneRun run;
+  FemVtuContent frame;
+  run_to_last_frame(&run, "incline",
+                    (const char *const[]){"output={frames: 2}", "time.end=0.5", "contact.friction=0.9", NULL},
+                    &frame);
+  const double *status = find_field(&frame, "contact_status"),
+               *pressure = find_field(&frame, "contact_pressure");
+  int sticking = 0;
+  for (int v = 0; v < run.model.vertex_count; v++)
+    if (pressure[v] > 0) {
+      ck_assert_double_eq(status[v], 1);
+      sticking++;
+    }
+  ck_assert_int_ge(sticking, 8);
+  close_last_frame(&run, &frame);
+}
+END_TEST
+
+// Two blocks 3 mm apart, which do not move.
+START_TEST(a_gap_is_the_distance_of_what_does_not_touch_yet) {
+  SceneRun run;
+  FemVtuContent frame;
+  int near = 0;
+  run_to_last_frame(
+      &run, "patch",
+      (const char *const[]){
+          "output={frames: 1}",
+          "bodies=[{name: low, mesh: {box: {size: [0.1, 0.1, 0.05], cells: [4, 4, 2]}}, fixed: [{group: "
+          "z_min}], material: {young: 1e6, poisson: 0.3, density: 1000}}, {name: high, mesh: {box: {size: "
+          "[0.1, 0.1, 0.05], cells: [5, 5, 3]}}, place: {translate: [0, 0, 0.053]}, fixed: [{group: z_max}], "
+          "material: {young: 1e6, poisson: 0.3, density: 1000}}]",
+          NULL},
+      &frame);
+  const double *gap = find_field(&frame, "contact_gap"), *status = find_field(&frame, "contact_status");
+  for (int v = 0; v < run.model.vertex_count; v++) {
+    double z = run.model.rest[3 * v + 2];
+    ck_assert_double_eq(status[v], 0);
+    if (fabs(z - 0.05) < 1e-9 || fabs(z - 0.053) < 1e-9) {
+      ck_assert_near(gap[v], 0.003, 1e-12);
+      near++;
+    } else if (gap[v] == gap[v])
+      ck_assert_near(gap[v], z < 0.05 ? 0.053 - z : z - 0.05, 1e-12); // of a side face
+  }
+  ck_assert_int_eq(near, 25 + 36);
+  close_last_frame(&run, &frame);
+}
+END_TEST
+
+// A shaft in a hole, both made smooth for contact: every vertex of both is pressed, though what is left of
+// the sagittas scatters the pressures.
+START_TEST(pressure_is_told_on_surfaces_that_are_made_smooth) {
+  SceneRun run;
+  FemVtuContent frame;
+  run_to_last_frame(&run, "shaft", NULL, &frame);
+  const double *pressure = find_field(&frame, "contact_pressure");
+  double sum = 0;
+  int pressed = 0;
+  for (int v = 0; v < run.model.vertex_count; v++)
+    if (pressure[v] > 0) sum += pressure[v], pressed++;
+  ck_assert_int_eq(pressed, 18 + 22);
+  for (int v = 0; v < run.model.vertex_count; v++)
+    if (pressure[v] > 0) ck_assert_near(pressure[v], sum / pressed, 0.8 * sum / pressed);
+  close_last_frame(&run, &frame);
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("frame_state");
   tcase_add_test(test_case, where_all_slides_the_traction_has_mu_times_the_pressure);
+  tcase_add_test(test_case, friction_work_of_vertices_is_the_work_of_the_run);
+  tcase_add_test(test_case, what_does_not_slide_is_told_to_stick);
+  tcase_add_test(test_case, a_gap_is_the_distance_of_what_does_not_touch_yet);
+  tcase_add_test(test_case, pressure_is_told_on_surfaces_that_are_made_smooth);
   tcase_add_loop_test(test_case, forces_made_anew_from_a_frame_are_those_that_it_holds, 0, CASES);
   tcase_add_test(test_case, forces_of_frames_are_mass_times_acceleration);
   tcase_add_loop_test(test_case, writing_frames_changes_no_bit_of_a_run, 0, 2);
