@@ -160,6 +160,8 @@ TABLES = {
     "overlap": Bench([["tetlap", "bench", "overlap", "-t", "1", "-r", "3", "--json"]],
                      by_quantity("pairs_per_cpu_second", ("near", "uniform", "disjoint"), ("V", "V+centroid", "V+grad", "V+grad+hess")), 4),
     "overlap-threads": Bench([["tetlap", "bench", "overlap", "-s", "near", "-Q", "V,V+grad", "-b", "512,131072", "-t", "1,2", "-r", "3", "--json"]], threads, 4),
+    "threads": Bench([["tools/measure/threads", "--program", "{program}", "--rounds", "3", "--plot", "{folder}/threads.svg", "heap:2", "heap:3", "examples/12_fold.yaml",
+                       "examples/02_two_blocks.yaml@time.end=0.08;bodies.lower.mesh.box.cells=16;bodies.upper.mesh.box.cells=18"]], as_told, 15, ("threads.svg", "docs/images/threads.svg")),
     "networks": Bench([["tetlap-lab", "net", "-t", "1", "-r", "5", "--json"]], networks, 3),
     "elements": Bench([["tetlap-lab", "elements", "--json"]], elements, 2),
     "frontier": Bench([["tools/measure/frontier", "--program", "{program}", "--pairs", "near", "-r", "3", "--sweep", "examples/train/sweep", "--wall", "5", "-o", "{folder}",
