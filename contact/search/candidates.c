@@ -244,6 +244,7 @@ static Status search_interfaces(ContactCandidates *candidates, const Search *sea
   }
   if (first_failed == count) return STATUS_OK;
   ContactFound *found = &candidates->found[first_failed];
+  if (found->status == STATUS_MEMORY) return status_no_memory("candidate pairs");
   TRY(search_interface(search, first_failed, found));
   return status_fail(found->status, "the search for pairs in contact failed once and not again");
 }
