@@ -72,6 +72,10 @@ static bool is_smooth(const ContactSystemDef *def) {
   return false;
 }
 
+static void begin_counters(ContactSystem *system) {
+  system->counters = (ContactCounters){.resting = system->layout.self.left_out.count};
+}
+
 // What depends on where the bodies are.
 static Status create_lists(ContactSystem *system) {
   TRY(contact_evaluation_create(&system->evaluation, &system->layout));
@@ -81,7 +85,7 @@ static Status create_lists(ContactSystem *system) {
   }
   TRY(contact_candidates_create(&system->candidates, &system->layout));
   TRY(contact_near_create(&system->near, &system->layout));
-  system->counters = (ContactCounters){.resting = system->layout.self.left_out.count};
+  begin_counters(system);
   return STATUS_OK;
 }
 
@@ -129,15 +133,6 @@ void contact_system_destroy(ContactSystem *system) {
   memory_free(system);
 }
 
-Status contact_system_start_over(ContactSystem *system) {
-  contact_candidates_destroy(&system->candidates);
-  contact_near_destroy(&system->near);
-  contact_rest_destroy(&system->rest);
-  system->has_rest = false;
-  contact_evaluation_destroy(&system->evaluation);
-  return create_lists(system);
-}
-
 // Where the contact mesh is; what the inner modules are given.
 static const double *place(ContactSystem *system, const double *positions) {
   if (!system->positions) return positions;
@@ -183,6 +178,24 @@ static void fold_result(ContactSystem *system) {
   contact_stars_cover(&system->stars, evaluation->covered, system->given_volumes, system->given_covered);
 }
 
+void contact_system_forget(ContactSystem *system) {
+  contact_near_forget(&system->near);
+  system->candidates.is_made = false;
+}
+
+void contact_system_start_over(ContactSystem *system) {
+  contact_rest_destroy(&system->rest);
+  system->has_rest = false;
+  system->evaluation.rest = NULL;
+  contact_candidates_leave_out(&system->candidates, &system->layout, NULL);
+  system->candidates.searches = 0;
+  system->candidates.search_s = 0;
+  contact_system_forget(system);
+  contact_evaluation_start_over(&system->evaluation, &system->layout);
+  fold_result(system);
+  begin_counters(system);
+}
+
 // Whether pairs that are known to stay apart need not be asked for.
 static bool evaluates_near(const ContactSystem *system) {
   return system->layout.def.model->ops->is_zero_apart;
@@ -212,13 +225,12 @@ Status contact_system_update(ContactSystem *system, double time, const double *p
   return status;
 }
 
-double contact_system_longest_step(const ContactSystem *system) {
-  return system->candidates.time_left;
+Status contact_system_keep(ContactSystem *system) {
+  return contact_candidates_keep(&system->candidates, &system->layout);
 }
 
-void contact_system_forget(ContactSystem *system) {
-  contact_near_forget(&system->near);
-  system->candidates.is_made = false;
+double contact_system_longest_step(const ContactSystem *system) {
+  return system->candidates.time_left;
 }
 
 static Status check_margin(ContactSystem *system, double time, const double *positions) {

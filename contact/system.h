@@ -47,9 +47,8 @@ typedef struct ContactCounters {
 typedef struct ContactSystem ContactSystem; // opaque: lists, scratch memory and one evaluation
 
 Status contact_system_create(ContactSystem **system, const ContactSystemDef *def);
-// As it was when it was created: what former positions left, counts too, is gone. After a failure it can be
-// destroyed.
-Status contact_system_start_over(ContactSystem *system);
+// As it was when it was created: what former positions left, counts too, is gone.
+void contact_system_start_over(ContactSystem *system);
 void contact_system_destroy(ContactSystem *system);
 
 // After an accepted step (and once before the first evaluation): rebuilds the candidate lists where the
@@ -60,12 +59,16 @@ void contact_system_destroy(ContactSystem *system);
 Status contact_system_update(ContactSystem *system, double time, const double *positions,
                              const double *velocities, double step, bool *has_changed);
 
+// Keeps the list of candidates, if it has just been made: where everything is the same again, to the last
+// bit, a list that is made anew is a copy of it. One is kept at a time.
+Status contact_system_keep(ContactSystem *system);
+
 // How long the next step may be so that no vertex is expected to move beyond the margin, at the speeds of the
 // last update [s].
 double contact_system_longest_step(const ContactSystem *system);
 
-// Makes the next update search anew. A run does so at its checkpoints, so that what follows does not depend
-// on earlier lists.
+// Makes the next update search anew. A run does so where it begins and at its checkpoints, so that what
+// follows does not depend on earlier lists.
 void contact_system_forget(ContactSystem *system);
 
 // Sets which parties (bodies, then shapes) are held in place from now on; NULL: none. Held parties must not

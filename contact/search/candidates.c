@@ -40,6 +40,17 @@ static void destroy_list(ContactCandidateList *list) {
   memory_free(list->cells);
 }
 
+// `to` has room for the pairs.
+static void copy_list(const ContactCandidateList *from, const ContactLayout *layout,
+                      ContactCandidateList *to) {
+  const size_t interfaces = (size_t)layout->interface_count;
+  if (from->count > 0) memcpy(to->pairs, from->pairs, (size_t)from->count * sizeof *to->pairs);
+  if (from->cell_count > 0) memcpy(to->cells, from->cells, (size_t)from->cell_count * sizeof *to->cells);
+  memcpy(to->begin, from->begin, (interfaces + 1) * sizeof *to->begin);
+  if (interfaces > 0) memcpy(to->margins, from->margins, interfaces * sizeof *to->margins);
+  to->count = from->count, to->cell_count = from->cell_count;
+}
+
 Status contact_candidates_create(ContactCandidates *candidates, const ContactLayout *layout) {
   *candidates = (ContactCandidates){0};
   TRY(create_list(&candidates->list, layout));
@@ -61,6 +72,7 @@ Status contact_candidates_create(ContactCandidates *candidates, const ContactLay
 void contact_candidates_destroy(ContactCandidates *candidates) {
   destroy_list(&candidates->list);
   destroy_list(&candidates->next);
+  contact_candidates_drop(candidates);
   for (int f = 0; candidates->found && f < candidates->found_count; f++)
     contact_broad_destroy(&candidates->found[f].pairs);
   memory_free(candidates->found);
@@ -188,13 +200,13 @@ static Status search_bodies(const Search *search, const ContactInterfaceDef *int
 static Status search_shape(const Search *search, const ContactInterfaceDef *interface, double margin,
                            ContactPairList *pairs) {
   const ContactLayout *layout = search->layout;
-  const ContactShape *shape = &layout->def.shapes[interface->shape];
+  const ContactShape shape = contact_shape_stand(&layout->def.shapes[interface->shape], search->time);
   const int *begin = layout->mesh.cell_begin;
   for (int i = begin[interface->a]; i < begin[interface->a + 1]; i++) {
     double x[12];
     if (!contact_mesh_leads(&layout->mesh, i)) continue;
     contact_layout_gather_whole(layout, i, search->positions, x);
-    if (!(contact_shape_separation(shape, search->time, x, margin) <= margin)) continue;
+    if (!(contact_shape_separation(&shape, search->time, x, margin) <= margin)) continue;
     if (!memory_reserve((void **)&pairs->pairs, &pairs->capacity, (size_t)pairs->count + 1,
                         sizeof *pairs->pairs))
       return status_no_memory("candidate pairs");
@@ -302,6 +314,81 @@ void contact_candidates_leave_out(ContactCandidates *candidates, const ContactLa
     for (int k = begin; k < end && !candidates->is_left_out[f]; k++) list->pairs[kept++] = list->pairs[k];
   }
   list->begin[layout->interface_count] = list->count = kept;
+  if (is_left_out) candidates->is_fresh = false;
+}
+
+// ---- A list that is kept.
+
+Status contact_candidates_keep(ContactCandidates *candidates, const ContactLayout *layout) {
+  const ContactCandidateList *list = &candidates->list;
+  ContactKeptCandidates *kept = &candidates->kept;
+  contact_candidates_drop(candidates);
+  if (!candidates->is_fresh) return STATUS_OK;
+  TRY(create_list(&kept->list, layout));
+  kept->list.pairs = memory_copy(list->pairs, (size_t)list->count, sizeof *list->pairs);
+  kept->list.capacity = (size_t)list->count;
+  kept->positions =
+      memory_copy(candidates->reference, 3 * (size_t)layout->mesh.position_count, sizeof *kept->positions);
+  kept->expected = memory_copy(candidates->expected, (size_t)layout->party_count, sizeof *kept->expected);
+  kept->shapes = memory_zeroed((size_t)layout->def.shape_count, sizeof *kept->shapes);
+  kept->is_left_out =
+      memory_copy(candidates->is_left_out, (size_t)layout->interface_count, sizeof *kept->is_left_out);
+  if (!kept->list.pairs || !kept->positions || !kept->expected || !kept->is_left_out || !kept->shapes) {
+    contact_candidates_drop(candidates);
+    return status_no_memory("the candidate lists");
+  }
+  copy_list(list, layout, &kept->list);
+  for (int s = 0; s < layout->def.shape_count; s++)
+    kept->shapes[s] = contact_shape_stand(&layout->def.shapes[s], candidates->reference_time);
+  kept->time = candidates->reference_time;
+  return STATUS_OK;
+}
+
+void contact_candidates_drop(ContactCandidates *candidates) {
+  ContactKeptCandidates *kept = &candidates->kept;
+  destroy_list(&kept->list);
+  memory_free(kept->positions);
+  memory_free(kept->shapes);
+  memory_free(kept->expected);
+  memory_free(kept->is_left_out);
+  *kept = (ContactKeptCandidates){0};
+}
+
+static bool shapes_stand(const ContactKeptCandidates *kept, const ContactLayout *layout, double time) {
+  for (int s = 0; s < layout->def.shape_count; s++) {
+    const ContactShape shape = contact_shape_stand(&layout->def.shapes[s], time);
+    if (memcmp(shape.point, kept->shapes[s].point, sizeof shape.point) != 0 ||
+        memcmp(shape.axes, kept->shapes[s].axes, sizeof shape.axes) != 0)
+      return false;
+  }
+  return true;
+}
+
+// Whether a search would find the list that is kept: all that it depends on is the same, to the last bit.
+static bool is_kept(const ContactCandidates *candidates, const ContactLayout *layout, double time,
+                    const double *positions) {
+  const ContactKeptCandidates *kept = &candidates->kept;
+  return kept->positions && time == kept->time && shapes_stand(kept, layout, time) &&
+         memcmp(kept->is_left_out, candidates->is_left_out,
+                (size_t)layout->interface_count * sizeof *kept->is_left_out) == 0 &&
+         memcmp(kept->expected, candidates->expected, (size_t)layout->party_count * sizeof *kept->expected) ==
+             0 &&
+         memcmp(kept->positions, positions, 3 * (size_t)layout->mesh.position_count * sizeof *positions) == 0;
+}
+
+// Fills `next`.
+static Status find_all(ContactCandidates *candidates, const ContactLayout *layout, double time,
+                       const double *positions) {
+  ContactCandidateList *next = &candidates->next;
+  if (candidates->is_made || !is_kept(candidates, layout, time, positions)) {
+    candidates->searches++;
+    return search_all(candidates, layout, time, positions);
+  }
+  const size_t count = (size_t)candidates->kept.list.count;
+  if (!memory_reserve((void **)&next->pairs, &next->capacity, count, sizeof *next->pairs))
+    return status_no_memory("candidate pairs");
+  copy_list(&candidates->kept.list, layout, next);
+  return STATUS_OK;
 }
 
 static bool lists_are_equal(const ContactCandidateList *a, const ContactCandidateList *b) {
@@ -326,7 +413,7 @@ static double time_left(const ContactCandidates *candidates, const ContactLayout
 Status contact_candidates_update(ContactCandidates *candidates, const ContactLayout *layout, double time,
                                  const double *positions, const double *velocities, double step,
                                  bool *has_changed) {
-  *has_changed = false;
+  *has_changed = candidates->is_fresh = false;
   measure(candidates, layout, time, positions);
   step = step > 0 ? step : NO_STEP;
   expect_motions(candidates, layout, time, velocities, step);
@@ -334,17 +421,16 @@ Status contact_candidates_update(ContactCandidates *candidates, const ContactLay
   if (!wants_search(candidates, layout)) return STATUS_OK;
 
   double start = clock_wall_s();
-  TRY(search_all(candidates, layout, time, positions));
+  TRY(find_all(candidates, layout, time, positions));
   *has_changed = !candidates->is_made || !lists_are_equal(&candidates->list, &candidates->next);
   ContactCandidateList previous = candidates->list;
   candidates->list = candidates->next;
   candidates->next = previous;
   memcpy(candidates->reference, positions, 3 * (size_t)layout->mesh.position_count * sizeof(double));
   candidates->reference_time = time;
-  candidates->is_made = true;
+  candidates->is_made = candidates->is_fresh = true;
   measure(candidates, layout, time, positions);
   candidates->time_left = time_left(candidates, layout, step);
-  candidates->searches++;
   candidates->search_s += clock_wall_s() - start;
   return STATUS_OK;
 }

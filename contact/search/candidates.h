@@ -28,9 +28,20 @@ typedef struct ContactFound {
   Status status;
 } ContactFound;
 
+// A list that a search found, with all that the search depends on.
+typedef struct ContactKeptCandidates {
+  ContactCandidateList list;
+  double *positions; // [m]; NULL: nothing is kept                        (position_count, 3)
+  double time;
+  ContactShape *shapes;    // as they stood                               (shape_count)
+  ContactMotion *expected; // in the next step                            (party_count)
+  bool *is_left_out;       // (interface_count)
+} ContactKeptCandidates;
+
 typedef struct ContactCandidates {
   ContactCandidateList list;
   bool is_made;
+  bool is_fresh;     // made by the last update
   bool *is_left_out; // interfaces that are not searched: at rest (contact/rest.h)   (interface_count)
   long long searches;
   double search_s;
@@ -38,6 +49,7 @@ typedef struct ContactCandidates {
   double *reference; // [m]                                           (position_count, 3)
   double reference_time;
   double time_left; // for which the list is expected to hold, at the speeds of the last update [s]
+  ContactKeptCandidates kept;
   // Scratch memory.
   ContactCandidateList next;
   ContactFound *found; // of each interface                       (found_count)
@@ -60,6 +72,11 @@ Status contact_candidates_update(ContactCandidates *candidates, const ContactLay
 // list; when an interface is searched again the list must be made anew.
 void contact_candidates_leave_out(ContactCandidates *candidates, const ContactLayout *layout,
                                   const bool *is_left_out);
+
+// Keeps the list, if the last update made it, until the next call: a list that is made anew where a search
+// would find the same is a copy.
+Status contact_candidates_keep(ContactCandidates *candidates, const ContactLayout *layout);
+void contact_candidates_drop(ContactCandidates *candidates); // what is kept
 
 // Whether the list still holds every overlapping pair; NaN: false.
 bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout *layout, double time,

@@ -374,10 +374,19 @@ void contact_convex_press(const ContactConvex *convex, const double tet[12], dou
 
 // ---- Separation.
 
+// fmin and fmax of numbers, but for the sign of 0; what is no number does not count as `y`.
+static inline double lesser(double x, double y) {
+  return y < x ? y : x;
+}
+
+static inline double greater(double x, double y) {
+  return y > x ? y : x;
+}
+
 static double extent(const ContactConvex *convex, Vec3 axis) {
   double largest = 0;
   for (int k = 0; k < convex->corner_count; k++)
-    largest = fmax(largest, fabs(vec3_dot(convex->corners[k], axis)));
+    largest = greater(largest, fabs(vec3_dot(convex->corners[k], axis)));
   return largest;
 }
 
@@ -387,7 +396,7 @@ static double gap_along(const ContactConvex *convex, const Vec3 x[4], Vec3 axis)
   if (!(length > 0)) return -INFINITY;
   for (int v = 0; v < 4; v++) {
     double height = vec3_dot(axis, x[v]);
-    low = fmin(low, height), high = fmax(high, height);
+    low = lesser(low, height), high = greater(high, height);
   }
   return (fmax(low, -high) - extent(convex, axis)) / length;
 }
@@ -398,8 +407,8 @@ double contact_convex_separation(const ContactConvex *convex, const double tet[1
   for (int v = 0; v < 4; v++) x[v] = vec3_at(tet + 3 * v);
   for (int k = 0; k < convex->plane_count; k++) {
     double low = INFINITY;
-    for (int v = 0; v < 4; v++) low = fmin(low, vec3_dot(convex->normals[k], x[v]) - convex->offsets[k]);
-    best = fmax(best, low);
+    for (int v = 0; v < 4; v++) low = lesser(low, vec3_dot(convex->normals[k], x[v]) - convex->offsets[k]);
+    best = greater(best, low);
   }
   if (best > enough) return best;
   for (int f = 0; f < 4; f++) {

@@ -223,6 +223,18 @@ void contact_shape_press(const ContactShape *shape, double time, const double te
     contact_halfspace_press(tet, point, shape->normal, rest_volume, volume, energy, gradient, hessian);
 }
 
+ContactShape contact_shape_stand(const ContactShape *shape, double time) {
+  const Pose pose = pose_of(shape, time);
+  ContactShape still = *shape;
+  vec3_store(still.point, pose.point);
+  for (int k = 0; k < 3; k++) {
+    vec3_store(still.axes[k], pose.axes[k]);
+    still.velocity[k] = 0;
+  }
+  still.move = NULL;
+  return still;
+}
+
 double contact_shape_separation(const ContactShape *shape, double time, const double tet[12], double enough) {
   double point[3], own[12];
   if (has_frame(shape)) {

@@ -33,6 +33,8 @@ double contact_shape_middle(const ContactShape *shape);
 // What of the shape is deeper than `depth`, which is less than its middle's. `solid` is kept, borrowed, where
 // the shape has one.
 ContactShape contact_shape_shrink(const ContactShape *shape, double depth, struct ContactConvex *solid);
+// The shape as it stands at that time, at rest: for many questions about one time.
+ContactShape contact_shape_stand(const ContactShape *shape, double time);
 // Distance of a tetrahedron from the shape [m], negative once they overlap; of a convex solid as in
 // overlap/separation.h, ending early with a lower bound once it exceeds `enough`.
 double contact_shape_separation(const ContactShape *shape, double time, const double tet[12], double enough);

@@ -36,6 +36,8 @@ typedef struct FemEffectOps {
   // Renews the lists that evaluations near this state need; `step` [s] is the length expected next. Results
   // do not depend on lists. NULL: there are none.
   Status (*renew)(void *self, const FemState *state, double step);
+  // The next `renew` makes its lists as if there were none. NULL: there are none.
+  void (*forget)(void *self);
   // What the effect remembers (FemEffectHistory): where a run begins, at this state, whose `last` is itself;
   // and once a state is accepted, from what it remembered at state->last. Evaluations read
   // state->last->histories at the effect's place. NULL: nothing.

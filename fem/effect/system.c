@@ -22,29 +22,36 @@ static Status name_effect(Status status, const FemEffectOps *ops) {
                                                        : status_prefix(status, "effect '%s'", ops->name);
 }
 
-// An effect of `old` (NULL: there is none) may become the new one of that place.
-static Status create_effect(FemEffect *effect, const FemModel *model, FemSystem *old, int place) {
-  bool takes_over = old && effect->ops->create_again;
-  Status status = takes_over ? effect->ops->create_again(&effect->self, &old->effects[place].self)
-                             : effect->ops->create(&effect->self, model);
-  return name_effect(status, effect->ops);
+// After a failure there is none.
+static Status create_effect_again(FemEffect *effect, const FemModel *model) {
+  const FemEffectOps *ops = effect->ops;
+  void *old = effect->self;
+  effect->self = NULL;
+  Status status =
+      ops->create_again ? ops->create_again(&effect->self, &old) : ops->create(&effect->self, model);
+  if (old) ops->destroy(old);
+  return name_effect(status, ops);
 }
 
-static Status create_effects(FemSystem *system, FemSystem *old) {
+static Status connect_effects(FemSystem *system) {
+  for (int i = 0; i < system->effect_count; i++) {
+    const FemEffectOps *ops = system->effects[i].ops;
+    TRY(name_effect(ops->connect ? ops->connect(system->effects[i].self, system) : STATUS_OK, ops));
+  }
+  return STATUS_OK;
+}
+
+static Status create_effects(FemSystem *system) {
   int count;
   const FemEffectOps *const *list = fem_effect_list(&count);
   for (int i = 0; i < count; i++) {
     if (!list[i]->is_wanted(system->model->scene)) continue;
     FemEffect *effect = &system->effects[system->effect_count];
     effect->ops = list[i];
-    TRY(create_effect(effect, system->model, old, system->effect_count));
+    TRY(name_effect(effect->ops->create(&effect->self, system->model), effect->ops));
     system->effect_count++;
   }
-  for (int i = 0; i < system->effect_count; i++) {
-    const FemEffectOps *ops = system->effects[i].ops;
-    TRY(name_effect(ops->connect ? ops->connect(system->effects[i].self, system) : STATUS_OK, ops));
-  }
-  return STATUS_OK;
+  return connect_effects(system);
 }
 
 static void weigh_effects(FemSystem *system) {
@@ -62,11 +69,11 @@ static Status couple_vertices(FemSystem *system) {
   return STATUS_OK;
 }
 
-// Lets effects tell their couplings: all of them, or only those that may have changed.
-static Status couple_effects(FemSystem *system, const FemState *state, bool only_changing, int *has_grown) {
+// Lets effects tell their couplings: those that may change, or the others.
+static Status couple_effects(FemSystem *system, const FemState *state, bool changing, int *has_grown) {
   for (int i = 0; i < system->effect_count; i++) {
     const FemEffectOps *ops = system->effects[i].ops;
-    if (!ops->couple || (only_changing && !ops->couples_anew)) continue;
+    if (!ops->couple || ops->couples_anew != changing) continue;
     // What changes is laid out on every rank, since parts of its cliques may belong to others.
     fem_pattern_set_share(system->pattern, ops->couples_anew ? NULL : system->model->share);
     TRY(ops->couple(system->effects[i].self, state, system->pattern, has_grown));
@@ -126,7 +133,30 @@ static Status create_accepted(FemSystem *system) {
   return STATUS_OK;
 }
 
-static Status create(FemSystem *system, FemSystem *old) {
+// What never changes of the matrix pattern, up to its mark.
+static Status create_pattern(FemSystem *system) {
+  TRY(fem_pattern_create(&system->pattern, system->model->vertex_count));
+  TRY(couple_vertices(system));
+  TRY(couple_effects(system, &system->accepted, false, NULL));
+  fem_pattern_mark(system->pattern);
+  return STATUS_OK;
+}
+
+// Lists, histories, couplings and matrix of the accepted state, whatever there was before. A layout that
+// comes out the same stays, but where ranks have to agree on it.
+static Status begin_at_accepted(FemSystem *system, double step) {
+  for (int i = 0; i < system->effect_count; i++)
+    if (system->effects[i].ops->forget) system->effects[i].ops->forget(system->effects[i].self);
+  TRY(renew_lists(system, &system->accepted, step));
+  TRY(start_histories(system));
+  fem_pattern_take_back(system->pattern);
+  TRY(couple_effects(system, &system->accepted, true, NULL));
+  if (system->numbering.count == 0) return STATUS_OK;
+  bool fits = fem_matrix_fits(&system->matrix, system->pattern, system->numbering.unknown_of_dof);
+  return fits && !system->model->share ? STATUS_OK : lay_out(system);
+}
+
+static Status create(FemSystem *system) {
   size_t values = 3 * (size_t)system->model->vertex_count;
   TRY(fem_numbering_create(&system->numbering, system->model));
   if (system->numbering.count == 0)
@@ -135,34 +165,37 @@ static Status create(FemSystem *system, FemSystem *old) {
   TRY(create_accepted(system));
   system->forces = memory_zeroed(values + 1, sizeof *system->forces);
   if (!system->forces) return status_no_memory("the state");
-  TRY(create_effects(system, old));
-  TRY(fem_pattern_create(&system->pattern, system->model->vertex_count));
-  TRY(couple_vertices(system));
-  TRY(renew_lists(system, &system->accepted, 0));
-  TRY(start_histories(system));
-  TRY(couple_effects(system, &system->accepted, false, NULL));
+  TRY(create_effects(system));
+  TRY(create_pattern(system));
+  TRY(begin_at_accepted(system, 0));
   weigh_effects(system);
-  return lay_out(system);
+  return STATUS_OK;
 }
 
-static Status create_from(FemSystem *system, const FemModel *model, FemSystem *old) {
+Status fem_system_create(FemSystem *system, const FemModel *model) {
   *system = (FemSystem){.model = model};
-  Status status = create(system, old);
+  Status status = create(system);
   if (status) fem_system_destroy(system);
   return status;
 }
 
-Status fem_system_create(FemSystem *system, const FemModel *model) {
-  return create_from(system, model, NULL);
+static Status create_again(FemSystem *system) {
+  FemNumbering *numbering = &system->numbering;
+  numbering->released = 0;
+  memset(numbering->is_held, 0, (size_t)system->model->body_count * sizeof *numbering->is_held);
+  fem_numbering_renew(numbering, system->model);
+  memset(system->costs, 0, sizeof system->costs);
+  system->layout_s = 0;
+  system->stop = NULL;
+  fem_state_destroy(&system->accepted);
+  TRY(create_accepted(system));
+  for (int i = 0; i < system->effect_count; i++) TRY(create_effect_again(&system->effects[i], system->model));
+  return connect_effects(system);
 }
 
 Status fem_system_create_again(FemSystem *system) {
-  FemSystem old = *system;
-  fem_matrix_destroy(&old.matrix); // the largest part, which is not taken over
-  fem_pattern_destroy(old.pattern);
-  old.pattern = NULL;
-  Status status = create_from(system, old.model, &old);
-  fem_system_destroy(&old);
+  Status status = create_again(system);
+  if (status) fem_system_destroy(system);
   return status;
 }
 
@@ -344,8 +377,7 @@ Status fem_system_assemble(FemSystem *system, const FemState *state, double k, d
 static Status begin(FemSystem *system, const FemState *state, double next_step) {
   TRY(fem_formulas_check(system->model, state->time));
   take_state(system, state);
-  TRY(renew_lists(system, &system->accepted, next_step));
-  return start_histories(system);
+  return begin_at_accepted(system, next_step);
 }
 
 Status fem_system_begin(FemSystem *system, const FemState *state, double next_step) {

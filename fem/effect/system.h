@@ -34,7 +34,7 @@ typedef struct FemSystem {
 } FemSystem;
 
 Status fem_system_create(FemSystem *system, const FemModel *model);
-// Creates it anew in place: everything that depends on earlier states is discarded. After a failure there is
+// Takes it back in place to what depends on no state; fem_system_begin must follow. After a failure there is
 // nothing to destroy.
 Status fem_system_create_again(FemSystem *system);
 void fem_system_destroy(FemSystem *system);
@@ -72,8 +72,8 @@ Status fem_system_renumber(FemSystem *system);
 Status fem_system_assemble(FemSystem *system, const FemState *state, double k, double d, double m,
                            FemMatrix *matrix);
 
-// A run begins, or goes on, at this state, which is accepted: effects begin to remember, and renew their
-// lists for a step of that length [s].
+// A run begins, or goes on, at this state, which is accepted, whatever has been before: effects begin to
+// remember, and make lists for a step of that length [s]; pattern and matrix are those of this state.
 Status fem_system_begin(FemSystem *system, const FemState *state, double next_step);
 // What the effect at that place remembers at the accepted state, from a checkpoint. STATUS_INPUT: it does not
 // fit.

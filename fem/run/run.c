@@ -274,7 +274,7 @@ static Status begin_result(FemRunState *run) {
   result->counters = record_new();
   if (!result->counters) return status_no_memory("the counters");
   record_merge(result->counters, run->checkpoint.so_far.counters);
-  FemTrouble now = fem_trouble_begin(run->model);
+  const FemTrouble now = run->mesh_trouble;
   if (run->checkpoint.next_frame == 0) result->trouble = now;
   result->trouble.sliver_count = now.sliver_count;
   result->trouble.worst_sliver = now.worst_sliver;
@@ -329,6 +329,7 @@ Status fem_run_loop_begin(FemRunState *run, const FemModel *model, const FemRunO
                        .cpu_began_s = clock_cpu_s(),
                        .inside_began_s = ranks()->stats()->inside_s};
   run->written_s = run->began_s;
+  run->mesh_trouble = fem_trouble_begin(model);
   TRY(prepare(run));
   TRY(allocate_states(run));
   FemRunSpan span = fem_run_clock_begin(run);
@@ -338,6 +339,15 @@ Status fem_run_loop_begin(FemRunState *run, const FemModel *model, const FemRunO
   return fem_run_checkpoint_offer(run);
 }
 
+// What measures states goes on with what the checkpoint knows; files of its own are opened anew.
+static Status restore_recorder(FemRunState *run) {
+  const FemCheckpoint *from = &run->checkpoint;
+  if (run->options->directory || run->options->keep_trajectory || from->next_frame == 0)
+    fem_recorder_destroy(&run->recorder);
+  return run->recorder.system ? fem_ledger_load(&run->recorder.ledger, from->ledger, from->ledger_count)
+                              : STATUS_OK;
+}
+
 Status fem_run_loop_restore(FemRunState *run, const FemCheckpoint *from) {
   FemCheckpoint copy;
   TRY(fem_restart_check(from, run->model));
@@ -345,9 +355,9 @@ Status fem_run_loop_restore(FemRunState *run, const FemCheckpoint *from) {
   end_part(run);
   fem_rest_destroy(run->rest);
   run->rest = NULL;
-  fem_recorder_destroy(&run->recorder);
   fem_checkpoint_destroy(&run->checkpoint);
   run->checkpoint = copy;
+  TRY(restore_recorder(run));
   fem_run_result_destroy(run->result);
   TRY(begin_result(run));
   TRY(begin_part(run));

@@ -43,6 +43,7 @@ typedef struct FemRunState {
   double stage_end;         // the next release of vertices, change for what sleeps, or the end [s]
   double target;            // a step ends there at the latest; INFINITY: anywhere [s]
   FemCheckpoint checkpoint; // where this part began
+  FemTrouble mesh_trouble;  // of the mesh itself, before anything moves
   bool is_written;          // is that in the file
   int interval;             // frames between two checkpoints; 0: none
   // Clocks: of this part, time within MPI then (base/ranks.h), and when a checkpoint was written.

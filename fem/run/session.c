@@ -125,6 +125,12 @@ Status fem_run_session_change(FemRunSession *session, bool jumps) {
   return status ? fail(session, status) : STATUS_OK;
 }
 
+// A run that is taken back to here need not search for contact.
+static Status keep_lists(FemRunState *run) {
+  void *contact = fem_system_effect(&run->system, &fem_effect_contact);
+  return contact ? contact_system_keep(fem_effect_contact_system(contact)) : STATUS_OK;
+}
+
 Status fem_run_session_keep(FemRunSession *session, FemCheckpoint *copy) {
   FemRunState *run = &session->run;
   if (session->failure) return status_fail(session->failure, "%s", session->message);
@@ -132,6 +138,7 @@ Status fem_run_session_keep(FemRunSession *session, FemCheckpoint *copy) {
     return status_fail(STATUS_INPUT, "the run has reached its end, t = %.9g s: no state after it is kept",
                        run->time);
   Status status = fem_run_loop_begin_anew(run);
+  if (!status) status = keep_lists(run);
   if (!status) status = look(run);
   return status ? fail(session, status) : fem_checkpoint_copy(copy, &run->checkpoint);
 }

@@ -296,6 +296,32 @@ Status fem_matrix_copy_layout(FemMatrix *copy, const FemMatrix *from) {
   return STATUS_OK;
 }
 
+// Whether the blocks of the vertex are those of the pattern.
+static bool fits_vertex(const FemMatrix *matrix, const FemPattern *pattern, int v) {
+  const FemMatrixBlocks *blocks = matrix->blocks;
+  int count, at = blocks->above_begin[v];
+  const int *above = fem_pattern_above(pattern, v, &count);
+  for (int k = 0; k < count && blocks->active[v]; k++) {
+    if (!blocks->active[above[k]]) continue;
+    if (at == blocks->above_begin[v + 1] || blocks->above[at++] != above[k]) return false;
+  }
+  return at == blocks->above_begin[v + 1];
+}
+
+bool fem_matrix_fits(const FemMatrix *matrix, const FemPattern *pattern, const int *unknown_of_dof) {
+  const FemMatrixBlocks *blocks = matrix->blocks;
+  if (!blocks || matrix->vertex_count != fem_pattern_vertex_count(pattern)) return false;
+  int next = 0;
+  for (int v = 0; v < matrix->vertex_count; v++) {
+    if (next != blocks->first[v]) return false;
+    for (int c = 0; c < 3; c++) next += unknown_of_dof[3 * v + c] >= 0;
+    if (next - blocks->first[v] != blocks->active[v]) return false;
+  }
+  for (int v = 0; v < matrix->vertex_count; v++)
+    if (!fits_vertex(matrix, pattern, v)) return false;
+  return true;
+}
+
 void fem_matrix_destroy(FemMatrix *matrix) {
   release_blocks(matrix->blocks);
   memory_free(matrix->value);

@@ -36,6 +36,8 @@ Status fem_matrix_create(FemMatrix *matrix, const FemPattern *pattern, const int
 // The same layout, shared, with values of its own, zeroed. Not from two threads at once.
 Status fem_matrix_copy_layout(FemMatrix *copy, const FemMatrix *from);
 void fem_matrix_destroy(FemMatrix *matrix);
+// Whether fem_matrix_create would lay it out the same; false of a zeroed one.
+bool fem_matrix_fits(const FemMatrix *matrix, const FemPattern *pattern, const int *unknown_of_dof);
 void fem_matrix_zero(FemMatrix *matrix);
 
 // matrix += scale · dense over the vertices' coordinates; dense (3 count, 3 count) row-major, symmetric; the

@@ -3,6 +3,7 @@
 
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 
@@ -11,11 +12,22 @@ typedef struct VertexList {
   int *vertices;
   int count;
   size_t capacity;
+  bool is_kept; // as it was at the mark
 } VertexList;
+
+// The list of a vertex at the mark.
+typedef struct Kept {
+  int vertex, count;
+  int *vertices; // owned
+} Kept;
 
 struct FemPattern {
   int vertex_count;
-  VertexList *above;     // of each vertex: its neighbours with a higher number   (vertex_count)
+  VertexList *above; // of each vertex: its neighbours with a higher number   (vertex_count)
+  bool is_marked;
+  Kept *kept; // of the lists that have grown since the mark                      (kept_count)
+  int kept_count;
+  size_t kept_capacity;
   const FemShare *share; // cliques that are taken; NULL: all
   VertexList clique;     // scratch: the clique that is being added
 };
@@ -36,6 +48,8 @@ void fem_pattern_destroy(FemPattern *pattern) {
   if (!pattern) return;
   if (pattern->above)
     for (int v = 0; v < pattern->vertex_count; v++) memory_free(pattern->above[v].vertices);
+  for (int k = 0; k < pattern->kept_count; k++) memory_free(pattern->kept[k].vertices);
+  memory_free(pattern->kept);
   memory_free(pattern->above);
   memory_free(pattern->clique.vertices);
   memory_free(pattern);
@@ -113,6 +127,39 @@ static Status merge(VertexList *list, int added_count, const int *added, int mis
   return STATUS_OK;
 }
 
+void fem_pattern_mark(FemPattern *pattern) {
+  fem_pattern_take_back(pattern);
+  pattern->is_marked = true;
+}
+
+void fem_pattern_take_back(FemPattern *pattern) {
+  for (int k = 0; k < pattern->kept_count; k++) {
+    const Kept *kept = &pattern->kept[k];
+    VertexList *list = &pattern->above[kept->vertex];
+    memcpy(list->vertices, kept->vertices, (size_t)kept->count * sizeof *list->vertices);
+    list->count = kept->count;
+    list->is_kept = false;
+    memory_free(kept->vertices);
+  }
+  pattern->kept_count = 0;
+}
+
+// The vertex' list is about to grow.
+static Status keep(FemPattern *pattern, int vertex) {
+  VertexList *list = &pattern->above[vertex];
+  if (!pattern->is_marked || list->is_kept) return STATUS_OK;
+  if (!memory_reserve((void **)&pattern->kept, &pattern->kept_capacity, (size_t)pattern->kept_count + 1,
+                      sizeof *pattern->kept))
+    return status_no_memory("the matrix pattern");
+  Kept *kept = &pattern->kept[pattern->kept_count];
+  *kept =
+      (Kept){vertex, list->count, memory_copy(list->vertices, (size_t)list->count, sizeof *list->vertices)};
+  if (!kept->vertices) return status_no_memory("the matrix pattern");
+  pattern->kept_count++;
+  list->is_kept = true;
+  return STATUS_OK;
+}
+
 void fem_pattern_set_share(FemPattern *pattern, const FemShare *share) {
   pattern->share = share;
 }
@@ -127,6 +174,7 @@ Status fem_pattern_add_clique(FemPattern *pattern, int count, const int *vertice
     int higher_count = clique->count - i - 1;
     int missing = count_missing(list, higher_count, higher);
     if (missing == 0) continue;
+    TRY(keep(pattern, clique->vertices[i]));
     TRY(merge(list, higher_count, higher, missing));
     if (has_grown) *has_grown = 1;
   }

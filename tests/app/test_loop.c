@@ -346,6 +346,31 @@ START_TEST(what_never_changes_is_made_once) {
 }
 END_TEST
 
+static const FemSystem *system_of(void) {
+  return &fem_run_session_state(loop.session)->system;
+}
+
+START_TEST(a_restore_takes_what_the_state_makes_equal) {
+  AppLoopState state;
+  open_loop("hand", NULL);
+  press(0.12);
+  ck_assert_ok(app_loop_state_keep(&loop, &state));
+  const ContactSystem *contact =
+      fem_effect_contact_system(fem_system_effect(system_of(), &fem_effect_contact));
+  const long long layout = system_of()->matrix.layout;
+  ck_assert_int_eq(contact_system_counters(contact)->searches, 1); // at that state, and not at rest
+  ck_assert_ok(app_loop_state_restore(&loop, &state));
+  ck_assert(system_of()->matrix.layout == layout);
+  ck_assert_int_eq(contact_system_counters(contact)->searches, 0);
+  ck_assert_int_eq(contact_system_counters(contact)->evaluations, 1);
+  ck_assert_ok(app_loop_advance(&loop, 0.16));
+  ck_assert_ok(app_loop_state_restore(&loop, &state));
+  ck_assert_int_eq(contact_system_counters(contact)->searches, 0);
+  app_loop_state_destroy(&state);
+  app_loop_close(&loop);
+}
+END_TEST
+
 START_TEST(an_advance_by_nothing_evaluates_nothing) {
   open_loop("hand", NULL);
   press(0.12);
@@ -413,6 +438,7 @@ int main(void) {
   tcase_add_test(test_case, a_static_scene_goes_from_equilibrium_to_equilibrium);
   tcase_add_test(test_case, an_advance_ends_where_a_condition_holds);
   tcase_add_test(test_case, what_never_changes_is_made_once);
+  tcase_add_test(test_case, a_restore_takes_what_the_state_makes_equal);
   tcase_add_test(test_case, an_advance_by_nothing_evaluates_nothing);
   tcase_add_test(test_case, a_run_that_is_stepped_evaluates_no_energy_that_the_run_does_not);
   tcase_add_test(test_case, a_time_that_differs_by_rounding_is_reached);

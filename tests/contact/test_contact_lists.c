@@ -259,6 +259,43 @@ START_TEST(a_halfspace_that_rises_beyond_the_margin_is_refused) {
 }
 END_TEST
 
+// How often has been searched once the lists are made anew.
+static long long searches_anew(Fixture *f, double time, const double *x) {
+  contact_system_start_over(f->system);
+  update(f, time, x);
+  return contact_system_counters(f->system)->searches;
+}
+
+START_TEST(a_list_that_is_kept_is_copied_where_a_search_would_find_the_same) {
+  static ContactShape ground = {.name = "ground", .normal = {0, 0, 1}, .velocity = {0, 0, 0.1}};
+  Fixture *f = two_blocks(-0.2, 0.1);
+  contact_system_destroy(f->system);
+  f->def.shapes = &ground, f->def.shape_count = 1;
+  ck_assert_ok(contact_system_create(&f->system, &f->def));
+  update(f, 0, f->blocks.x);
+  ck_assert_ok(contact_system_keep(f->system));
+  double *x = moved(f, 0.5, 0, 0);
+  ck_assert_int_eq(searches_anew(f, 0, x), 1);
+  Result away = result_at(f, f->system, 0, x);
+  ck_assert_int_eq(searches_anew(f, 0, f->blocks.x), 0);
+  Result copied = result_at(f, f->system, 0, f->blocks.x);
+  ck_assert_int_gt(copied.active_count, 50);
+  ck_assert_int_eq(searches_anew(f, 1, f->blocks.x), 1); // another time
+  ground.point[2] = -0.01;                               // an obstacle that was set elsewhere
+  ck_assert_int_eq(searches_anew(f, 0, f->blocks.x), 1);
+  ground.point[2] = 0;
+  f->velocities[0] = 1; // other steps are expected
+  ck_assert_int_eq(searches_anew(f, 0, f->blocks.x), 1);
+  f->velocities[0] = 0;
+  ck_assert_int_eq(searches_anew(f, 0, f->blocks.x), 0);
+  update(f, 0, f->blocks.x); // makes no list, so there is none to keep
+  ck_assert_ok(contact_system_keep(f->system));
+  ck_assert_int_eq(searches_anew(f, 0, f->blocks.x), 1);
+  check_same(f, copied, result_at(f, f->system, 0, f->blocks.x));
+  free(away.force), free(x), destroy(f);
+}
+END_TEST
+
 // ---- Couplings
 
 typedef struct Couplings {
@@ -352,6 +389,7 @@ int main(void) {
   tcase_add_test(cases, bodies_far_apart_may_move_as_far_as_they_are_apart);
   tcase_add_test(cases, a_fast_body_is_stopped_at_the_surface_and_not_behind_it);
   tcase_add_test(cases, a_halfspace_that_rises_beyond_the_margin_is_refused);
+  tcase_add_test(cases, a_list_that_is_kept_is_copied_where_a_search_would_find_the_same);
   tcase_add_loop_test(cases, couplings_hold_the_stiffness_here_and_within_reach, 0, CONTACT_POTENTIAL_COUNT);
   tcase_add_test(cases, a_visitor_that_fails_ends_the_visit);
   return suite_run("contact_lists", cases, 60);

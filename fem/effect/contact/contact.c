@@ -175,18 +175,19 @@ static Status create(void **self, const FemModel *model) {
 // The overlap model, whose weights may have been replaced on the disk, stays; so do surfaces and laws.
 static Status create_again(void **self, void **old) {
   Contact *contact = *old;
+  contact_system_start_over(contact->system);
+  *self = contact;
   *old = NULL;
-  Status status = contact_system_start_over(contact->system);
-  if (status)
-    destroy(contact);
-  else
-    *self = contact;
-  return status;
+  return STATUS_OK;
 }
 
 static Status renew(void *self, const FemState *state, double step) {
   Contact *contact = self;
   return contact_system_update(contact->system, state->time, state->positions, state->velocities, step, NULL);
+}
+
+static void forget(void *self) {
+  contact_system_forget(((Contact *)self)->system);
 }
 
 typedef struct Coupling {
@@ -278,6 +279,7 @@ const FemEffectOps fem_effect_contact = {
     .create_again = create_again,
     .couple = couple,
     .renew = renew,
+    .forget = forget,
     .add_force = add_force,
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,

@@ -104,6 +104,57 @@ START_TEST(only_new_couplings_count_as_growth) {
 }
 END_TEST
 
+// A chain of all vertices.
+static FemPattern *make_chain(void) {
+  FemPattern *pattern;
+  ck_assert_ok(fem_pattern_create(&pattern, VERTICES));
+  for (int v = 0; v + 1 < VERTICES; v++)
+    ck_assert_ok(fem_pattern_add_clique(pattern, 2, (int[]){v, v + 1}, NULL));
+  return pattern;
+}
+
+START_TEST(a_pattern_goes_back_to_its_mark) {
+  FemPattern *chain = make_chain(), *marked = make_chain();
+  FemMatrix matrix;
+  int unknowns[DOFS];
+  for (int dof = 0; dof < DOFS; dof++) unknowns[dof] = dof;
+  ck_assert_ok(fem_matrix_create(&matrix, chain, unknowns));
+  fem_pattern_mark(marked);
+  ck_assert(fem_matrix_fits(&matrix, marked, unknowns));
+  for (int round = 0; round < 2; round++) {
+    int has_grown = 0;
+    ck_assert_ok(fem_pattern_add_clique(marked, 3, (int[]){0, 11, 22}, NULL));
+    ck_assert_ok(fem_pattern_add_clique(marked, 6, (int[]){0, 4, 9, 13, 17, 21}, &has_grown));
+    ck_assert_int_eq(has_grown, 1);
+    ck_assert(!fem_matrix_fits(&matrix, marked, unknowns));
+    fem_pattern_take_back(marked);
+    for (int v = 0; v < VERTICES; v++) {
+      int count, expected_count;
+      const int *expected = fem_pattern_above(chain, v, &expected_count),
+                *above = fem_pattern_above(marked, v, &count);
+      ck_assert_int_eq(count, expected_count);
+      if (count > 0) ck_assert_mem_eq(above, expected, (size_t)count * sizeof *above);
+    }
+    ck_assert(fem_matrix_fits(&matrix, marked, unknowns));
+  }
+  fem_matrix_destroy(&matrix);
+  fem_pattern_destroy(chain), fem_pattern_destroy(marked);
+}
+END_TEST
+
+START_TEST(a_matrix_fits_the_unknowns_that_it_was_laid_out_for) {
+  Case c;
+  set_up(&c, 6);
+  int other[DOFS], count = 0;
+  for (int dof = 0; dof < DOFS; dof++) other[dof] = dof / 3 == 5 || c.unknown_of_dof[dof] >= 0 ? count++ : -1;
+  ck_assert_int_gt(count, c.unknown_count);
+  ck_assert(fem_matrix_fits(&c.matrix, c.pattern, c.unknown_of_dof));
+  ck_assert(!fem_matrix_fits(&c.matrix, c.pattern, other));
+  ck_assert(!fem_matrix_fits(&(FemMatrix){0}, c.pattern, c.unknown_of_dof));
+  tear_down(&c);
+}
+END_TEST
+
 START_TEST(a_large_clique_is_complete) {
   FemPattern *pattern;
   enum { SIZE = 300 };
@@ -335,6 +386,7 @@ START_TEST(every_failed_allocation_is_an_error) {
     FemMatrix matrix = {0}, copy = {0};
     memory_fail_at(k);
     Status status = fem_pattern_create(&pattern, VERTICES);
+    if (status == STATUS_OK) fem_pattern_mark(pattern);
     for (int i = 0; i < CLIQUES && status == STATUS_OK; i++)
       status = fem_pattern_add_clique(pattern, c.clique_size[i], c.clique[i], NULL);
     if (status == STATUS_OK) status = fem_matrix_create(&matrix, pattern, c.unknown_of_dof);
@@ -354,6 +406,8 @@ END_TEST
 int main(void) {
   TCase *cases = tcase_create("matrix");
   tcase_add_test(cases, only_new_couplings_count_as_growth);
+  tcase_add_test(cases, a_pattern_goes_back_to_its_mark);
+  tcase_add_test(cases, a_matrix_fits_the_unknowns_that_it_was_laid_out_for);
   tcase_add_test(cases, a_large_clique_is_complete);
   tcase_add_test(cases, a_chain_is_laid_out_as_by_hand);
   tcase_add_test(cases, sums_equal_a_dense_matrix);
