@@ -59,6 +59,8 @@ static const Key obstacle_keys[] = {
 static const Key scene_keys[] = {
     {"contact.stiffness", FEM_PARAMETER_CONTACT_STIFFNESS, -1, -1, -1},
     {"contact.pairs[#].stiffness", FEM_PARAMETER_PAIR_STIFFNESS, 0, -1, -1},
+    {"contact.friction", FEM_PARAMETER_FRICTION, -1, -1, -1},
+    {"contact.pairs[#].friction", FEM_PARAMETER_PAIR_FRICTION, 0, -1, -1},
     {"contact.viscosity", FEM_PARAMETER_MOTION_ALONE, -1, -1, -1},
     {"effects.gravity[#]", FEM_PARAMETER_GRAVITY, -1, -1, 0},
     {"effects.damping", FEM_PARAMETER_MOTION_ALONE, -1, -1, -1},
@@ -73,7 +75,7 @@ const char app_gradient_keys[] =
     "obstacles.NAME.{halfspace.point[K], sphere.centre[K], box.centre[K], cylinder.centre[K], "
     "place.translate[K]}; "
     "obstacles.NAME.motion.{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}; "
-    "contact.stiffness, contact.pairs[N].stiffness; "
+    "contact.stiffness, contact.friction, contact.pairs[N].{stiffness, friction}; "
     "effects.gravity[K]";
 
 static bool matches(const char *key, const char *pattern, int numbers[MAX_NUMBERS]) {

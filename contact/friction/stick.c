@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "contact/friction/deformation.h"
 #include "contact/limits.h"
 
 // A vertex counts as sliding from this share of its limit.
@@ -68,39 +69,6 @@ Status contact_stick_reserve(ContactStick *stick, int pair_count) {
               memory_reserve((void **)&stick->order, &stick->order_capacity, 8 * n, sizeof *stick->order) &&
               memory_reserve((void **)&stick->nodes, &stick->node_capacity, 8 * n, sizeof *stick->nodes);
   return fits ? STATUS_OK : status_no_memory("friction");
-}
-
-// ---- Small matrices, by rows.
-
-static Vec3 times(const double A[9], Vec3 x) {
-  return (Vec3){A[0] * x.x + A[1] * x.y + A[2] * x.z, A[3] * x.x + A[4] * x.y + A[5] * x.z,
-                A[6] * x.x + A[7] * x.y + A[8] * x.z};
-}
-
-// A⁻¹ x, and x itself where A is flat.
-static Vec3 divide(const double A[9], Vec3 x) {
-  Vec3 r0 = vec3_at(A), r1 = vec3_at(A + 3), r2 = vec3_at(A + 6);
-  double det = vec3_dot(r0, vec3_cross(r1, r2)), size = vec3_length(r0) * vec3_length(r1) * vec3_length(r2);
-  if (!(fabs(det) > CONTACT_ROUNDING * size)) return x;
-  Vec3 sum = vec3_add(vec3_scale(x.x, vec3_cross(r1, r2)), vec3_scale(x.y, vec3_cross(r2, r0)));
-  return vec3_scale(1 / det, vec3_add(sum, vec3_scale(x.z, vec3_cross(r0, r1))));
-}
-
-// F of a tetrahedron: edges now by edges at rest.
-static void find_deformation(const ContactStick *stick, int tet, const double *positions, double F[9]) {
-  const int *v = stick->tets[tet];
-  Vec3 rest[3], now[3], across[3];
-  for (int k = 0; k < 3; k++) {
-    rest[k] = vec3_sub(vec3_at(stick->rest + 3 * (size_t)v[k + 1]), vec3_at(stick->rest + 3 * (size_t)v[0]));
-    now[k] = vec3_sub(vec3_at(positions + 3 * (size_t)v[k + 1]), vec3_at(positions + 3 * (size_t)v[0]));
-  }
-  for (int k = 0; k < 3; k++) across[k] = vec3_cross(rest[(k + 1) % 3], rest[(k + 2) % 3]);
-  double det = vec3_dot(rest[0], across[0]);
-  for (int r = 0; r < 9; r++) F[r] = 0;
-  for (int k = 0; k < 3; k++) {
-    const double column[3] = {now[k].x, now[k].y, now[k].z};
-    for (int r = 0; r < 3; r++) vec3_accumulate(F + 3 * r, vec3_scale(column[r] / det, across[k]));
-  }
 }
 
 static Vec3 project(Vec3 normal, Vec3 x) {
@@ -178,7 +146,7 @@ static void gather(ContactStick *stick, const ContactStickLast *last, const doub
       for (int v = 0; v < 4; v++) stick->touches[k][side][v] = (ContactStickTouch){.node = -1};
       if (!is_slave(stick, &stick->pairs[k], side)) continue;
       int tet = stick->pairs[k].tets[side];
-      if (tet != former[side]) find_deformation(stick, tet, positions, F[side]);
+      if (tet != former[side]) contact_deformation_find(stick->tets[tet], stick->rest, positions, F[side]);
       former[side] = tet;
       gather_side(stick, last, k, side, F[side]);
     }
@@ -213,7 +181,7 @@ static Vec3 keep_energy(double energy, double k, Vec3 stretch) {
 
 // `cut`: the way that it slides since then; `spent`: what that dissipates.
 static void remember_slip(const ContactStickEntry *entry, Vec3 cut, double spent, ContactStickNode *node) {
-  Vec3 kept = entry ? times(node->deformation, vec3_at(entry->slip)) : (Vec3){0, 0, 0};
+  Vec3 kept = entry ? contact_deformation_times(node->deformation, vec3_at(entry->slip)) : (Vec3){0, 0, 0};
   vec3_store(node->slid, vec3_add(kept, cut));
   node->way = (entry ? entry->way : 0) + vec3_length(cut);
   node->work = (entry ? entry->work : 0) + spent;
@@ -230,7 +198,7 @@ static double return_radially(ContactStick *stick, const ContactStickHistory *hi
   for (int r = 0; r < 9; r++) node->deformation[r] /= node->weight;
   node->limit *= pressed;
   double k = node->stiffness;
-  Vec3 carried = project(normal, keep_energy(before, k, times(node->deformation, kept)));
+  Vec3 carried = project(normal, keep_energy(before, k, contact_deformation_times(node->deformation, kept)));
   Vec3 way = project(normal, vec3_scale(1 / node->weight, vec3_at(node->gap))),
        trial = vec3_add(carried, way);
   double length = vec3_length(trial);
@@ -341,17 +309,25 @@ Status contact_stick_eval(ContactStick *stick, const ContactStickLast *last, int
   return STATUS_OK;
 }
 
-void contact_stick_add_force(const ContactStick *stick, double *force) {
-  for (int k = 0; k < stick->pair_count; k++)
-    for (int side = 0; side < 2; side++) {
-      const ContactStickPair *pair = &stick->pairs[k];
-      if (pair->tets[side] < 0) continue;
-      for (int v = 0; v < 4; v++) {
-        double share = side == 0 ? pair->lambda[0][v] : -pair->lambda[1][v];
-        contact_stars_push(stick->stars, stick->tets[pair->tets[side]][v],
-                           vec3_scale(share, vec3_at(stick->pulls[k])), force);
-      }
+static void push_pair(const ContactStick *stick, int k, double *force) {
+  const ContactStickPair *pair = &stick->pairs[k];
+  for (int side = 0; side < 2; side++) {
+    if (pair->tets[side] < 0) continue;
+    for (int v = 0; v < 4; v++) {
+      double share = side == 0 ? pair->lambda[0][v] : -pair->lambda[1][v];
+      contact_stars_push(stick->stars, stick->tets[pair->tets[side]][v],
+                         vec3_scale(share, vec3_at(stick->pulls[k])), force);
     }
+  }
+}
+
+void contact_stick_add_force(const ContactStick *stick, double *force) {
+  for (int k = 0; k < stick->pair_count; k++) push_pair(stick, k, force);
+}
+
+void contact_stick_add_force_of(const ContactStick *stick, int interface, double *force) {
+  for (int k = 0; k < stick->pair_count; k++)
+    if (stick->pairs[k].interface == interface) push_pair(stick, k, force);
 }
 
 // ---- The matrix.
@@ -452,8 +428,8 @@ static ContactStickEntry entry_of(const ContactStickNode *node) {
                              .slides = contact_stick_slides(node),
                              .way = node->way,
                              .work = node->work};
-  vec3_store(entry.stretch, divide(node->deformation, stretch));
-  vec3_store(entry.slip, divide(node->deformation, vec3_at(node->slid)));
+  vec3_store(entry.stretch, contact_deformation_divide(node->deformation, stretch));
+  vec3_store(entry.slip, contact_deformation_divide(node->deformation, vec3_at(node->slid)));
   vec3_store(entry.slid, vec3_at(node->slid));
   return entry;
 }

@@ -138,6 +138,8 @@ bool contact_stick_slides(const ContactStickNode *node);
 // Of the last evaluation.
 // By the vertices as given: (vertex_count, 3) without stars.
 void contact_stick_add_force(const ContactStick *stick, double *force);
+// That of one interface.
+void contact_stick_add_force_of(const ContactStick *stick, int interface, double *force);
 // Adds −∂f/∂x, without what comes from N, n and the weights.
 Status contact_stick_add_stiffness(ContactStick *stick, const ContactStiffnessSink *sink);
 // Visits the vertices that each node couples.

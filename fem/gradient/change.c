@@ -22,7 +22,9 @@ Status fem_change_create(FemChange *change, const FemTangent *tangent) {
   change->product = memory_zeroed(values, sizeof(double));
   change->contact = memory_zeroed(values, sizeof(double));
   change->rates = memory_zeroed((size_t)tangent->interface_count, sizeof(double));
-  bool fits = change->force && change->motion && change->product && change->contact && change->rates;
+  change->slips = memory_zeroed((size_t)tangent->interface_count, sizeof(double));
+  bool fits =
+      change->force && change->motion && change->product && change->contact && change->rates && change->slips;
   return fits ? STATUS_OK : status_no_memory("what a parameter changes");
 }
 
@@ -30,6 +32,7 @@ void fem_change_destroy(FemChange *change) {
   memory_free(change->force);
   memory_free(change->motion);
   memory_free(change->rates);
+  memory_free(change->slips);
   memory_free(change->product);
   memory_free(change->contact);
   *change = (FemChange){0};
@@ -40,6 +43,7 @@ static void clear(FemChange *change, const FemTangent *tangent) {
   memset(change->force, 0, bytes);
   memset(change->motion, 0, bytes);
   memset(change->rates, 0, (size_t)tangent->interface_count * sizeof(double));
+  memset(change->slips, 0, (size_t)tangent->interface_count * sizeof(double));
   change->party = change->placed = -1;
   change->elastic = change->gravity = 0;
   for (int c = 0; c < 3; c++) change->shift[c] = change->spin[c] = change->rest[c] = 0;
@@ -93,22 +97,24 @@ static Status press(FemChange *change, const FemTangent *tangent, const FemParam
 
 // ---- Prescribed motion.
 
-// The value of a copy of a motion that the parameter is, and a step for differences of it.
+// The value of a copy of a motion that the parameter is, and a step for differences of it; at the beginning,
+// where it does not act yet, any.
 static double *value_in(FemConstraintDef *motion, const FemParameter *parameter, double time, double length,
                         double *step) {
   static const double TURN = 1e-2; // [rad]
+  double rate = time > 0 ? 1 / time : 1;
   *step = length;
   switch (parameter->kind) {
   case FEM_PARAMETER_VELOCITY:
-    *step = length / time;
+    *step = length * rate;
     return &motion->velocity[parameter->component];
   case FEM_PARAMETER_AMPLITUDE:
     return &motion->amplitude[parameter->component];
   case FEM_PARAMETER_FREQUENCY:
-    *step = TURN / (2 * M_PI * time);
+    *step = TURN / (2 * M_PI) * rate;
     return &motion->frequency;
   case FEM_PARAMETER_SPIN:
-    *step = TURN / time;
+    *step = TURN * rate;
     return &motion->spin;
   default:
     return &motion->table[4 * parameter->row + 1 + parameter->component];
@@ -251,6 +257,15 @@ static void rate_contact(FemChange *change, const FemTangent *tangent, const Fem
   }
 }
 
+static void rub(FemChange *change, const FemTangent *tangent, const FemParameter *parameter) {
+  int pair = parameter->kind == FEM_PARAMETER_PAIR_FRICTION ? parameter->item : -1;
+  for (int i = 0; i < tangent->interface_count; i++) {
+    const ContactInterfaceDef *interface = fem_tangent_interface(tangent, i);
+    change->slips[i] =
+        fem_parameter_friction_pair(tangent->system->model, interface->a, interface->b) == pair;
+  }
+}
+
 static Status rate_choice(FemChange *change, FemVaried *varied, const FemTangent *tangent, int body,
                           FemParameterKind constant) {
   double *rates;
@@ -330,6 +345,10 @@ static Status find(FemChange *change, FemVaried *varied, const FemTangent *tange
   case FEM_PARAMETER_CONTACT_STIFFNESS:
   case FEM_PARAMETER_PAIR_STIFFNESS:
     rate_contact(change, tangent, parameter);
+    break;
+  case FEM_PARAMETER_FRICTION:
+  case FEM_PARAMETER_PAIR_FRICTION:
+    rub(change, tangent, parameter);
     break;
   default: // acts in motions alone
     break;

@@ -15,6 +15,7 @@ typedef struct FemChange {
   double *force;  // on all vertices, contact included                     (vertex_count, 3)
   double *motion; // of prescribed coordinates, else 0                     (vertex_count, 3)
   double *rates;  // ∂ ln κ/∂p of each interface                           (interface_count)
+  double *slips;  // ∂μ/∂p of each interface                               (interface_count)
   int party;      // the obstacle that moves; −1: none
   double shift[3], spin[3];
   int placed;                // the body that stands elsewhere; −1: none

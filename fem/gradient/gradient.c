@@ -140,7 +140,7 @@ static Status solve_goal(Adjoint *adjoint, int g, double *factors, FemGradient *
   TRY(solve(adjoint, &gradient->residuals[g]));
   for (int i = 0; i < adjoint->count; i++) all[numbering->dof_of_unknown[i]] = adjoint->lambda[i];
   TRY(compare(adjoint, &gradient->mismatches[g]));
-  fem_tangent_multiply(&adjoint->tangent, all, adjoint->change.product);
+  TRY(fem_tangent_multiply(&adjoint->tangent, all, adjoint->change.product));
   for (size_t i = 0; i < values; i++) slope[i] -= adjoint->change.product[i];
   return STATUS_OK;
 }
@@ -190,12 +190,13 @@ static Status find(FemGradient *gradient, Adjoint *adjoint) {
   return STATUS_OK;
 }
 
+bool fem_gradient_has_friction(const FemModel *model) {
+  return model->scene->contact.is_on && fem_scene_most_friction(&model->scene->contact) > 0;
+}
+
 static Status check_contact(const FemSceneDef *scene) {
   const FemContactDef *contact = &scene->contact;
   if (!contact->is_on) return STATUS_OK;
-  if (fem_scene_most_friction(contact) > 0)
-    return status_fail(STATUS_INPUT,
-                       "friction remembers its history, which gradients do not go back through");
   if (strcmp(contact->overlap, "clip") != 0)
     return status_fail(STATUS_INPUT,
                        "contact.overlap: '%s' has no exact second derivatives in the matrix; gradients need "
@@ -257,6 +258,9 @@ Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGrad
   TRY(fem_gradient_check(system->model, def));
   if (!system->model->scene->is_static)
     return status_fail(STATUS_INPUT, "the scene moves: it ends in no equilibrium");
+  if (fem_gradient_has_friction(system->model))
+    return status_fail(STATUS_INPUT,
+                       "friction remembers what has been: an equilibrium alone has no gradient");
   Adjoint adjoint;
   Status status = create(&adjoint, system, def);
   if (!status) status = find(gradient, &adjoint);

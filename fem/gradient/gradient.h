@@ -20,13 +20,17 @@ typedef struct FemGradientDef {
 } FemGradientDef;
 
 typedef struct FemGradient {
-  double unbalanced; // largest force on an unknown, as a share of the largest on a vertex
-  double *values;    // g, owned                                            (goal_count)
-  double *residuals; // |∂g/∂x − K λ| / |∂g/∂x|, owned                      (goal_count)
-  double *mismatches; // |K λ + ∂f/∂x λ| / |K λ|, ∂f/∂x λ by differences of forces; NaN of a motion; owned
+  double unbalanced;  // largest force on an unknown, as a share of the largest on a vertex
+  long long switches; // of a path, of vertices between sticking and slipping from step to step
+  double *values;     // g, owned                                            (goal_count)
+  double *residuals;  // |∂g/∂x − K λ| / |∂g/∂x|, owned                      (goal_count)
+  double *mismatches; // |K λ + ∂f/∂x λ| / |K λ|, ∂f/∂x λ by differences of forces; NaN of a path; owned
                       // (goal_count)
   double *derivatives; // dg/dp, owned                       (goal_count, parameter_count)
 } FemGradient;
+
+// Whether it remembers what has been: fem/gradient/path.h goes back through that.
+bool fem_gradient_has_friction(const FemModel *model);
 
 // STATUS_INPUT: what cannot be differentiated in this scene; the message says what and why.
 Status fem_gradient_check(const FemModel *model, const FemGradientDef *def);

@@ -44,16 +44,28 @@ const FemConstraintDef *fem_parameter_motion(const FemModel *model, const FemPar
   return parameter->item < body->driven_count ? &body->driven[parameter->item] : NULL;
 }
 
+static bool is_of(const FemModel *model, const FemContactPairDef *pair, int a, int b) {
+  int first = fem_compliance_party(model, pair->names[0]);
+  int second = fem_compliance_party(model, pair->names[1]);
+  return (first == a && second == b) || (first == b && second == a);
+}
+
 int fem_parameter_pair(const FemModel *model, int a, int b) {
   const FemContactDef *contact = contact_of(model);
   int found = -1;
   for (int i = 0; i < contact->pair_count; i++) {
     const FemContactPairDef *pair = &contact->pairs[i];
-    int first = fem_compliance_party(model, pair->names[0]);
-    int second = fem_compliance_party(model, pair->names[1]);
-    bool is_theirs = (first == a && second == b) || (first == b && second == a);
-    if (is_theirs && (pair->stiffness > 0 || pair->law.law.kind != CONTACT_LAW_LINEAR)) found = i;
+    bool is_given = pair->stiffness > 0 || pair->law.law.kind != CONTACT_LAW_LINEAR;
+    if (is_given && is_of(model, pair, a, b)) found = i;
   }
+  return found;
+}
+
+int fem_parameter_friction_pair(const FemModel *model, int a, int b) {
+  const FemContactDef *contact = contact_of(model);
+  int found = -1;
+  for (int i = 0; i < contact->pair_count; i++)
+    if (contact->pairs[i].friction >= 0 && is_of(model, &contact->pairs[i], a, b)) found = i;
   return found;
 }
 
@@ -75,6 +87,18 @@ static Status check_pair(const FemModel *model, const FemParameter *parameter) {
                        contact->is_on ? contact->pair_count : 0);
   if (contact->pairs[parameter->item].stiffness > 0) return STATUS_OK;
   return status_fail(STATUS_INPUT, "contact.pairs[%d] has no stiffness of its own", parameter->item);
+}
+
+static Status check_friction(const FemModel *model, const FemParameter *parameter) {
+  const FemContactDef *contact = contact_of(model);
+  bool is_pair = parameter->kind == FEM_PARAMETER_PAIR_FRICTION;
+  if (!contact->is_on) return status_fail(STATUS_INPUT, "contact.friction: the scene has no contact");
+  if (is_pair && parameter->item >= contact->pair_count)
+    return status_fail(STATUS_INPUT, "contact.pairs[%d].friction: there are %d pairs", parameter->item,
+                       contact->pair_count);
+  if ((is_pair ? contact->pairs[parameter->item].friction : contact->friction) > 0) return STATUS_OK;
+  return status_fail(STATUS_INPUT, "%s is not given or 0, where it has no derivative: give it a value",
+                     is_pair ? "the pair's friction" : "contact.friction");
 }
 
 static Status check_load(const FemModel *model, const FemParameter *parameter) {
@@ -148,6 +172,9 @@ Status fem_parameter_check(const FemModel *model, const FemParameter *parameter)
     return check_stiffness(model);
   case FEM_PARAMETER_PAIR_STIFFNESS:
     return check_pair(model, parameter);
+  case FEM_PARAMETER_FRICTION:
+  case FEM_PARAMETER_PAIR_FRICTION:
+    return check_friction(model, parameter);
   case FEM_PARAMETER_MOTION_ALONE:
     if (!model->scene->is_static)
       return status_fail(STATUS_INPUT, "there is no derivative by damping or viscosity in a motion");
@@ -263,6 +290,10 @@ double fem_parameter_value(const FemModel *model, const FemParameter *parameter)
     return contact_of(model)->stiffness;
   case FEM_PARAMETER_PAIR_STIFFNESS:
     return contact_of(model)->pairs[parameter->item].stiffness;
+  case FEM_PARAMETER_FRICTION:
+    return contact_of(model)->friction;
+  case FEM_PARAMETER_PAIR_FRICTION:
+    return contact_of(model)->pairs[parameter->item].friction;
   case FEM_PARAMETER_START:
     return model->scene->bodies[parameter->body].velocity[parameter->component];
   case FEM_PARAMETER_MOTION_ALONE:

@@ -23,6 +23,8 @@ typedef enum FemParameterKind {
   FEM_PARAMETER_PLACE,             // a coordinate of where a body or an obstacle stands [m]
   FEM_PARAMETER_CONTACT_STIFFNESS, // κ as the scene gives it for all pairs
   FEM_PARAMETER_PAIR_STIFFNESS,    // κ of contact.pairs[item]
+  FEM_PARAMETER_FRICTION,          // μ between any two that no pair says otherwise
+  FEM_PARAMETER_PAIR_FRICTION,     // μ of contact.pairs[item]
   FEM_PARAMETER_START,             // a component of the velocity that a body starts with [m/s]
   FEM_PARAMETER_MOTION_ALONE,      // what acts in motions alone: damping, viscosities
 } FemParameterKind;
@@ -50,5 +52,7 @@ const char *fem_parameter_unit(const FemModel *model, const FemParameter *parame
 const FemConstraintDef *fem_parameter_motion(const FemModel *model, const FemParameter *parameter);
 // The entry of contact.pairs that gives two parties their stiffness or law, −1: none does.
 int fem_parameter_pair(const FemModel *model, int a, int b);
+// The same of their friction.
+int fem_parameter_friction_pair(const FemModel *model, int a, int b);
 
 #endif

@@ -193,8 +193,10 @@ static Status evaluate_interface(const FemQuantity *quantity, const FemTangent *
   weigh(quantity, tangent, interface, scratch->w);
   memset(scratch->force, 0, values * sizeof(double));
   TRY(fem_tangent_add_contact(tangent, interface, scratch->force));
+  if (tangent->friction) TRY(fem_friction_add_force(tangent->friction, interface, scratch->force));
   *value += dot(tangent, scratch->w, scratch->force);
   if (!slope) return STATUS_OK;
+  if (tangent->friction) TRY(fem_friction_pull(tangent->friction, interface, scratch->w, weight));
   if (quantity->kind == FEM_QUANTITY_MOMENT)
     add_arms(quantity, tangent, interface, scratch->force, weight, slope);
   memset(scratch->force, 0, values * sizeof(double));
@@ -243,6 +245,14 @@ static void mark_held(const FemQuantity *quantity, const FemTangent *tangent, do
   }
 }
 
+// The slope of −Σ f.
+static Status resist(const FemTangent *tangent, double weight, Scratch *scratch, double *slope) {
+  TRY(fem_tangent_multiply(tangent, scratch->w, scratch->force));
+  for (size_t i = 0; i < values_of(tangent); i++) slope[i] += weight * scratch->force[i];
+  if (!tangent->friction) return STATUS_OK;
+  return fem_friction_pull(tangent->friction, CONTACT_ALL_INTERFACES, scratch->w, -weight);
+}
+
 static Status evaluate_reaction(const FemQuantity *quantity, const FemTangent *tangent, double weight,
                                 double *value, double *slope) {
   FemSystem *system = tangent->system;
@@ -252,8 +262,7 @@ static Status evaluate_reaction(const FemQuantity *quantity, const FemTangent *t
   if (!status) {
     mark_held(quantity, tangent, scratch.w);
     *value = -dot(tangent, scratch.w, system->forces);
-    fem_tangent_multiply(tangent, scratch.w, scratch.force);
-    for (size_t i = 0; slope && i < values_of(tangent); i++) slope[i] += weight * scratch.force[i];
+    if (slope) status = resist(tangent, weight, &scratch, slope);
   }
   destroy_scratch(&scratch);
   return status;

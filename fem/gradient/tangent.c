@@ -8,6 +8,7 @@ Status fem_tangent_create(FemTangent *tangent, FemSystem *system, const FemState
   *tangent = (FemTangent){.system = system, .state = state};
   int count = 3 * system->model->vertex_count;
   void *contact = fem_system_effect(system, &fem_effect_contact);
+  tangent->stick = fem_system_effect(system, &fem_effect_stick);
   if (contact) {
     tangent->contact = fem_effect_contact_system(contact);
     tangent->interface_count = contact_system_layout(tangent->contact)->interface_count;
@@ -25,8 +26,37 @@ void fem_tangent_destroy(FemTangent *tangent) {
   *tangent = (FemTangent){0};
 }
 
-void fem_tangent_multiply(const FemTangent *tangent, const double *x, double *y) {
+// A matrix that is never formed: y += share S x.
+typedef struct Product {
+  const double *x;
+  double *y, share;
+} Product;
+
+static void add_dense(void *self, int count, const int *vertices, const double *matrix) {
+  const Product *product = self;
+  int width = 3 * count;
+  for (int r = 0; r < width; r++) {
+    double sum = 0;
+    for (int c = 0; c < width; c++)
+      sum += matrix[r * width + c] * product->x[3 * (size_t)vertices[c / 3] + (size_t)(c % 3)];
+    product->y[3 * (size_t)vertices[r / 3] + (size_t)(r % 3)] += product->share * sum;
+  }
+}
+
+static void add_outer(void *self, int count, const int *vertices, const double *w, double scale) {
+  const Product *product = self;
+  double sum = 0;
+  for (int c = 0; c < 3 * count; c++) sum += w[c] * product->x[3 * (size_t)vertices[c / 3] + (size_t)(c % 3)];
+  for (int r = 0; r < 3 * count; r++)
+    product->y[3 * (size_t)vertices[r / 3] + (size_t)(r % 3)] += product->share * scale * sum * w[r];
+}
+
+Status fem_tangent_multiply(const FemTangent *tangent, const double *x, double *y) {
   fem_matrix_multiply(&tangent->stiffness, x, y);
+  if (!tangent->stick) return STATUS_OK;
+  Product product = {x, y, -1};
+  return fem_effect_stick_add_stiffness(tangent->stick, tangent->state,
+                                        &(ContactStiffnessSink){&product, add_outer, add_dense});
 }
 
 const ContactInterfaceDef *fem_tangent_interface(const FemTangent *tangent, int interface) {
@@ -51,35 +81,10 @@ Status fem_tangent_contact_energy(const FemTangent *tangent, int interface, doub
   return STATUS_OK;
 }
 
-// A matrix that is never formed: y += S x.
-typedef struct Product {
-  const double *x;
-  double *y;
-} Product;
-
-static void add_dense(void *self, int count, const int *vertices, const double *matrix) {
-  const Product *product = self;
-  int width = 3 * count;
-  for (int r = 0; r < width; r++) {
-    double sum = 0;
-    for (int c = 0; c < width; c++)
-      sum += matrix[r * width + c] * product->x[3 * (size_t)vertices[c / 3] + (size_t)(c % 3)];
-    product->y[3 * (size_t)vertices[r / 3] + (size_t)(r % 3)] += sum;
-  }
-}
-
-static void add_outer(void *self, int count, const int *vertices, const double *w, double scale) {
-  const Product *product = self;
-  double sum = 0;
-  for (int c = 0; c < 3 * count; c++) sum += w[c] * product->x[3 * (size_t)vertices[c / 3] + (size_t)(c % 3)];
-  for (int r = 0; r < 3 * count; r++)
-    product->y[3 * (size_t)vertices[r / 3] + (size_t)(r % 3)] += scale * sum * w[r];
-}
-
 Status fem_tangent_add_contact_product(const FemTangent *tangent, int interface, const double *x, double *y) {
   const ContactEvaluation *evaluation;
   TRY(evaluate(tangent, &evaluation));
-  Product product = {x, y};
+  Product product = {x, y, 1};
   const ContactStiffnessSink sink = {&product, add_outer, add_dense};
   return contact_system_stiffness_of(tangent->contact, evaluation, interface, &sink);
 }

@@ -6,6 +6,7 @@
 
 #include "contact/system.h"
 #include "fem/effect/system.h"
+#include "fem/gradient/friction.h"
 
 typedef struct FemTangent {
   FemSystem *system;      // borrowed
@@ -14,6 +15,8 @@ typedef struct FemTangent {
   int *every_dof;         // 0, 1, 2 …                                    (3·vertex_count)
   ContactSystem *contact; // borrowed; NULL: the scene has none
   int interface_count;
+  void *stick;           // friction's effect, borrowed; NULL: the scene has none
+  FemFriction *friction; // where derivatives by friction are added, borrowed; NULL: nowhere
 } FemTangent;
 
 // At a state at which the system's pattern has been laid out (fem_system_couple). Destroy it also after a
@@ -21,11 +24,13 @@ typedef struct FemTangent {
 Status fem_tangent_create(FemTangent *tangent, FemSystem *system, const FemState *state);
 void fem_tangent_destroy(FemTangent *tangent);
 
-// y = K x, both (vertex_count, 3). Those of a mesh obstacle's vertices lack contact.
-void fem_tangent_multiply(const FemTangent *tangent, const double *x, double *y);
+// y = K x, both (vertex_count, 3), but for friction's part, which is not exact. Those of a mesh obstacle's
+// vertices lack contact.
+Status fem_tangent_multiply(const FemTangent *tangent, const double *x, double *y);
 
 const ContactInterfaceDef *fem_tangent_interface(const FemTangent *tangent, int interface);
-// The contact of one interface: its forces (added), its energy [J], and its part of K x (added).
+// The contact of one interface, without friction: its forces (added), its energy [J], and its part of K x
+// (added).
 Status fem_tangent_add_contact(const FemTangent *tangent, int interface, double *force);
 Status fem_tangent_contact_energy(const FemTangent *tangent, int interface, double *energy);
 Status fem_tangent_add_contact_product(const FemTangent *tangent, int interface, const double *x, double *y);

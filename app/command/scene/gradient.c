@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/gradient/motion.h"
+#include "fem/gradient/path.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -30,7 +30,8 @@ static const AppOption option_table[] = {
      1, CLI_REPEATED, CLI_TO(Options, of), .most = MAX_GOALS, .example = "--of",
      .count_offset = offsetof(Options, of_count)},
     {"by", 0, "KEY,...",
-     "By these keys of the scene: materials, loads, motions, places, contact.stiffness, effects.gravity[K]; "
+     "By these keys of the scene: materials, loads, motions, places, contact.stiffness, contact.friction, "
+     "effects.gravity[K]; "
      "docs/gradients.md lists them",
      1, CLI_LIST, CLI_TO(Options, by), .most = MAX_PARAMETERS, .example = "contact.stiffness",
      .count_offset = offsetof(Options, by_count)},
@@ -64,16 +65,18 @@ typedef struct Asked {
   FemGoal goals[MAX_GOALS];
   FemParameter parameters[MAX_PARAMETERS];
   FemGradientDef def;
-  FemMotionSteps steps; // of a motion
+  FemReplaySteps steps; // of a path
   FemGradient gradient;
 } Asked;
 
+// Whether the last state alone does not tell the derivatives.
+static bool is_path(const FemModel *model) {
+  return !model->scene->is_static || fem_gradient_has_friction(model);
+}
+
 static Status at_step(void *observer, const FemRunProgress *progress) {
   Asked *asked = observer;
-  FemMotionSteps *steps = &asked->steps;
-  if (!progress->system->model->scene->is_static)
-    return progress->time > steps->times[steps->count - 1] ? fem_motion_steps_add(steps, progress->time)
-                                                           : STATUS_OK;
+  if (is_path(progress->system->model)) return fem_replay_steps_add(&asked->steps, progress->system);
   if (progress->time < progress->end) return STATUS_OK;
   fem_gradient_destroy(&asked->gradient);
   return fem_gradient_find(&asked->gradient, progress->system, &asked->def);
@@ -103,8 +106,16 @@ static void fill_rows(const Options *options, const FemModel *model, const Asked
   }
 }
 
+// How many vertices began or ended to slip.
+static const char *switches_of(const FemGradient *gradient, char *text, size_t size) {
+  if (gradient->switches == 0) return "";
+  snprintf(text, size, ", %lld switches between stick and slip", gradient->switches);
+  return text;
+}
+
 static Status print_plain(const Options *options, const FemModel *model, const Asked *asked) {
   const FemGradient *gradient = &asked->gradient;
+  char text[64];
   if (strcmp(stiffness_of(model, options->is_total), "kept") == 0)
     printf("contact.stiffness, which is chosen, is kept as it is; --total lets it follow E and ν\n");
   for (int g = 0; g < options->of_count; g++) {
@@ -115,7 +126,7 @@ static Status print_plain(const Options *options, const FemModel *model, const A
            gradient->values[g], app_gradient_unit(&asked->goals[g], options->of[g]), gradient->residuals[g],
            gradient->unbalanced);
     if (asked->steps.count > 0)
-      printf("; a replay of %d steps\n", asked->steps.count - 1);
+      printf("; a replay of %d steps%s\n", asked->steps.count - 1, switches_of(gradient, text, sizeof text));
     else
       printf(", of the matrix %.1e\n", gradient->mismatches[g]);
     TRY(app_table_print(&(AppTable){&part, 1, options->by_count}, APP_TABLE_PLAIN, stdout));
@@ -141,6 +152,7 @@ static Status print_json(const Options *options, const FemModel *model, const As
   if (!record) return status_no_memory("a gradient");
   record_text(record, "contact_stiffness", stiffness_of(model, options->is_total));
   if (asked->steps.count > 0) record_integer(record, "steps", asked->steps.count - 1);
+  if (asked->steps.count > 0) record_integer(record, "stick_slip_switches", asked->gradient.switches);
   record_number(record, "force_residual", asked->gradient.unbalanced);
   Record *of = record_child(record, "of");
   for (int g = 0; g < options->of_count; g++)
@@ -162,9 +174,7 @@ static Status prepare(const Options *options, const FemModel *model, Asked *aske
   for (int p = 0; p < options->by_count; p++)
     TRY(status_prefix(app_gradient_read_parameter(model, options->by[p], &asked->parameters[p]), "--by"));
   TRY(fem_gradient_check(model, &asked->def));
-  if (model->scene->is_static) return STATUS_OK;
-  TRY(fem_motion_check(model, &asked->def));
-  return fem_motion_steps_add(&asked->steps, 0);
+  return is_path(model) ? fem_path_check(model, &asked->def) : STATUS_OK;
 }
 
 static Status differentiate(const Options *options, const FemModel *model) {
@@ -173,15 +183,15 @@ static Status differentiate(const Options *options, const FemModel *model) {
   FemRunOptions run = {.observe = at_step, .observer = &asked, .stop = app_job_stop_flag()};
   Status status = prepare(options, model, &asked);
   if (!status) status = fem_run(model, &run, &result);
-  if (!status && !model->scene->is_static)
-    status = fem_motion_differentiate(&asked.gradient, model, &asked.def, &asked.steps);
+  if (!status && is_path(model))
+    status = fem_path_differentiate(&asked.gradient, model, &asked.def, &asked.steps);
   if (!status && !asked.gradient.derivatives)
     status = status_fail(STATUS_SOLVER, "the run ended before time.end: no gradient");
   if (!status)
     status = options->job.is_json ? print_json(options, model, &asked) : print_plain(options, model, &asked);
   fem_run_result_destroy(&result);
   fem_gradient_destroy(&asked.gradient);
-  fem_motion_steps_destroy(&asked.steps);
+  fem_replay_steps_destroy(&asked.steps);
   for (int g = 0; g < options->of_count; g++) app_gradient_destroy_goal(&asked.goals[g]);
   return status;
 }
@@ -212,7 +222,7 @@ const AppCommand app_command_gradient = {
     .arguments = &(const AppArguments){"SCENE", offsetof(Options, job.scene_path), 1,
                                        .missing = "name a scene file, as in examples/26_hertz.yaml",
                                        .excess = "one scene at a time; '%s' is the second"},
-    .doc = "Run a static scene without friction, or a motion without friction and damping, to its end, and "
+    .doc = "Run a static scene, or a motion without damping, to its end, and "
            "print the exact derivatives of quantities g "
            "there by parameters p, from one solve for each g.\vThe share p dg/dp / g says by how many per "
            "cent g "

@@ -66,9 +66,23 @@ static void destroy(void *self) {
   memory_free(stick);
 }
 
-static ContactStickHistory history_of(const Stick *stick, const FemState *accepted) {
-  const FemEffectHistory *history = &accepted->histories[stick->place];
+int fem_effect_stick_place(const void *effect) {
+  return ((const Stick *)effect)->place;
+}
+
+ContactStickHistory fem_effect_stick_history(const void *effect, const FemEffectHistory *history) {
+  const Stick *stick = effect;
   return contact_stick_history_view(stick->law.interface_count, history->values, history->count);
+}
+
+static ContactStickHistory history_of(const Stick *stick, const FemState *accepted) {
+  return fem_effect_stick_history(stick, &accepted->histories[stick->place]);
+}
+
+// What it was at the last accepted state.
+static ContactStickLast last_of(Stick *stick, const FemState *state) {
+  return (ContactStickLast){.positions = contact_system_place(stick->contact, state->last->positions),
+                            .history = history_of(stick, state->last)};
 }
 
 // The friction at a state, which is evaluated once, and the contact that it is of.
@@ -76,8 +90,7 @@ static Status evaluate(Stick *stick, const FemState *state, const ContactEvaluat
   const FemState *last = state->last;
   TRY(contact_evaluate(stick->contact, state->version, state->time, state->positions, evaluation));
   if (stick->version == state->version && stick->last_version == last->version) return STATUS_OK;
-  ContactStickLast before = {.positions = contact_system_place(stick->contact, last->positions),
-                             .history = history_of(stick, last)};
+  ContactStickLast before = last_of(stick, state);
   stick->version = 0;
   TRY(contact_stick_pairs_eval(&stick->law, stick->contact, *evaluation, &before, last->time,
                                stick->is_resting));
@@ -210,4 +223,19 @@ Status fem_effect_stick_tell(void *effect, const FemState *state, const ContactS
   contact_stick_tell(&stick->law, &history, stick->is_resting,
                      contact_system_layout(stick->contact)->mesh.depths, told);
   return STATUS_OK;
+}
+
+Status fem_effect_stick_pull(void *effect, const FemState *state, const ContactStickPull *pull) {
+  Stick *stick = effect;
+  const ContactEvaluation *evaluation;
+  TRY(evaluate(stick, state, &evaluation));
+  ContactStickLast last = last_of(stick, state);
+  return contact_stick_pull(&stick->law, stick->contact, evaluation, &last, state->last->time, pull);
+}
+
+Status fem_effect_stick_add_stiffness(void *effect, const FemState *state, const ContactStiffnessSink *sink) {
+  Stick *stick = effect;
+  const ContactEvaluation *evaluation;
+  TRY(evaluate(stick, state, &evaluation));
+  return contact_stick_add_stiffness(&stick->law, contact_system_sink(stick->contact, sink));
 }

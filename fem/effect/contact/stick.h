@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The inside of friction by elastic stick, for output.
+// The inside of friction by elastic stick, for output and derivatives.
 #ifndef TETLAP_FEM_EFFECT_STICK_H
 #define TETLAP_FEM_EFFECT_STICK_H
 
+#include "contact/friction/stick_pull.h"
 #include "contact/friction/stick_told.h"
 #include "fem/effect/state.h"
 
 // The law of the effect that fem_system_effect(system, &fem_effect_stick) returned, as it is at a state; the
 // effect's, valid until it is asked for another one.
 Status fem_effect_stick_evaluate(void *effect, const FemState *state, const ContactStick **law);
+// Its derivatives backwards, at a state (contact/friction/stick_pull.h).
+Status fem_effect_stick_pull(void *effect, const FemState *state, const ContactStickPull *pull);
+// Adds −∂f/∂x as far as the matrix has it, without what comes from N, n and the weights.
+Status fem_effect_stick_add_stiffness(void *effect, const FemState *state, const ContactStiffnessSink *sink);
+// Where the system's states have what it remembers.
+int fem_effect_stick_place(const void *effect);
+// A view of what it remembers, of the numbers of one of its histories.
+ContactStickHistory fem_effect_stick_history(const void *effect, const FemEffectHistory *history);
 
 // What it tells at the given vertices at a state (contact/friction/stick_told.h).
 Status fem_effect_stick_tell(void *effect, const FemState *state, const ContactStickTold *told);

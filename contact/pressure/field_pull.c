@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "contact/pressure/field_pull.h"
+
+#include <string.h>
+
+#include "contact/pressure/clipped.h"
+#include "contact/pressure/field.h"
+#include "contact/pressure/side.h"
+#include "contact/shape/shape.h"
+
+// ∂g/∂ of what the found values are functions of.
+typedef struct Means {
+  double moments[8]; // of m_z, by the cells' vertices
+  double s[2];
+  Vec3 g[2];
+} Means;
+
+// Of the area ½ V |F|/U; those of V and U are returned, that of F is added.
+static void pull_area(const ContactFieldPair *field, double area_slope, Vec3 *force_slope, double *of_volume,
+                      double *of_energy) {
+  Vec3 force = vec3_at(field->force);
+  double area = contact_field_area(field), square = vec3_dot(force, force);
+  *of_volume = *of_energy = 0;
+  if (!(square > 0 && field->energy > 0)) return;
+  *of_volume = area_slope * area / field->volume;
+  *of_energy = -area_slope * area / field->energy;
+  *force_slope = vec3_add(*force_slope, vec3_scale(area_slope * area / square, force));
+}
+
+// The transpose of contact_mesh_fold.
+static void unfold(const ContactLayout *layout, int cell, double slopes[4]) {
+  int replaced = layout->mesh.replaced[cell];
+  if (replaced < 0) return;
+  const double *weights =
+      layout->mesh.virtuals[layout->mesh.own[cell][replaced] - layout->def.vertex_count].weights;
+  double sum = 0;
+  for (int v = 0; v < 4; v++) sum += weights[v] * slopes[v];
+  slopes[replaced] = sum;
+}
+
+// Of λ_z(x̄) = m_z / V.
+static double pull_weights(const ContactLayout *layout, const ContactPair *pair, double lambda[2][4],
+                           const ContactFieldPair *field, const ContactFieldSlopes *by, Means *means) {
+  double of_volume = 0;
+  for (int t = 0; t < 2; t++) {
+    double slopes[4];
+    memcpy(slopes, by->weights[t], sizeof slopes);
+    unfold(layout, pair->cells[t], slopes);
+    for (int v = 0; v < 4; v++) {
+      means->moments[4 * t + v] += slopes[v] / field->volume;
+      of_volume -= slopes[v] * lambda[t][v] / field->volume;
+    }
+  }
+  return of_volume;
+}
+
+static void find_means(const ContactLayout *layout, const ContactPair *pair, const ContactSide sides[2],
+                       const ContactFieldPair *field, const ContactFieldSlopes *by, Means *means) {
+  double c = layout->interfaces[pair->interface].stiffness, lambda[2][4], of_volume, of_energy;
+  Vec3 force_slope = vec3_at(by->force);
+  memset(means, 0, sizeof *means);
+  for (int t = 0; t < 2; t++) contact_side_locate(&sides[t], vec3_at(field->centroid), lambda[t]);
+  pull_area(field, by->area, &force_slope, &of_volume, &of_energy);
+  of_volume += vec3_dot(force_slope, vec3_at(field->force)) / field->volume;
+  of_volume += pull_weights(layout, pair, lambda, field, by, means);
+  for (int t = 0; t < 2; t++) { // F = −c V (s₀ g₁ − s₁ g₀), U = c V (s₀ φ₁ + s₁ φ₀)
+    double sign = t == 0 ? -c : c, whole = of_energy * c * sides[1 - t].s;
+    means->s[t] = sign * field->volume * vec3_dot(force_slope, sides[1 - t].g) +
+                  of_energy * c * field->volume * field->depths[1 - t];
+    means->g[1 - t] = vec3_scale(sign * sides[t].s * field->volume, force_slope);
+    for (int v = 0; v < 4; v++) means->moments[4 * t + v] += whole * sides[t].depths[v];
+  }
+  for (int v = 0; v < 4; v++) means->moments[v] += of_volume;
+}
+
+static void add_to(double slope[24], int z, Vec3 by) {
+  vec3_accumulate(slope + 3 * z, by);
+}
+
+// Of s and g of both cells.
+static void pull_sides(const ContactSide sides[2], const Means *means, double slope[24]) {
+  for (int t = 0; t < 2; t++)
+    for (int v = 0; v < 4; v++) {
+      double turned = vec3_dot(means->g[t], sides[t].slope[v]);
+      add_to(slope, 4 * t + v, vec3_scale(-means->s[t] * sides[t].s, sides[t].slope[v]));
+      add_to(slope, 4 * t + v, vec3_scale(-turned, sides[t].g));
+    }
+}
+
+// What of m_z follows from the volume of P.
+static void pull_volume(const ContactSide sides[2], const double lambda[8], double volume, const Means *means,
+                        double slope[24]) {
+  double whole = 0;
+  Vec3 drift = {0, 0, 0};
+  for (int z = 0; z < 8; z++) whole += means->moments[z] * lambda[z] * volume;
+  for (int v = 0; v < 4; v++) drift = vec3_add(drift, vec3_scale(means->moments[4 + v], sides[1].slope[v]));
+  for (int v = 0; v < 4; v++) {
+    add_to(slope, v, vec3_scale(whole, sides[0].slope[v]));
+    add_to(slope, v, vec3_scale(lambda[v] * volume, drift));
+    add_to(slope, 4 + v, vec3_scale(-lambda[4 + v] * volume, drift));
+  }
+}
+
+// What of m_z follows from the faces of B that bound P.
+static void pull_faces(const ContactClipped *clipped, const Means *means, double slope[24]) {
+  const OverlapClipFrame *frame = &clipped->polytope.frame[1];
+  for (int i = 0; i < clipped->triangle_count; i++) {
+    const ContactTriangle *triangle = &clipped->triangles[i];
+    if (triangle->face < 4) continue;
+    double mean[3] = {0, 0, 0}, sign = frame->det < 0 ? 1 : -1;
+    const double *corner[3];
+    for (int k = 0; k < 3; k++) {
+      corner[k] = clipped->polytope.vertex[triangle->vertex[k]];
+      for (int z = 0; z < 8; z++) mean[k] += means->moments[z] * corner[k][z];
+    }
+    Vec3 area = vec3_scale(sign * triangle->share / 24, frame->normal[triangle->face % 4]); // of S_f twice it
+    for (int z = 0; z < 8; z++) {
+      double sum = (mean[0] + mean[1] + mean[2]) * (corner[0][z] + corner[1][z] + corner[2][z]);
+      for (int k = 0; k < 3; k++) sum += mean[k] * corner[k][z];
+      add_to(slope, z, vec3_scale(z < 4 ? -sum : sum, area));
+    }
+  }
+}
+
+// From the cells' vertices to the tetrahedra's: a virtual one follows them by its weights.
+static void fold_slopes(const ContactLayout *layout, const ContactPair *pair, const double own[24],
+                        double slope[24]) {
+  for (int t = 0; t < 2; t++)
+    for (int c = 0; c < 3; c++) {
+      double row[4];
+      for (int v = 0; v < 4; v++) row[v] = own[12 * t + 3 * v + c];
+      contact_mesh_fold(&layout->mesh, &layout->def, pair->cells[t], row);
+      for (int v = 0; v < 4; v++) slope[12 * t + 3 * v + c] += row[v];
+    }
+}
+
+void contact_field_pull(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
+                        const ContactFieldPair *field, const ContactFieldSlopes *by, double slope[24]) {
+  ContactClipped clipped;
+  ContactSide sides[2];
+  Means means;
+  double settled[24], own[24] = {0}, lambda[8];
+  memcpy(settled, coordinates, sizeof settled);
+  contact_layout_unsettle_pair(layout, pair, settled);
+  if (!contact_clipped_make(&clipped, layout, pair, settled)) return;
+  for (int t = 0; t < 2; t++) {
+    sides[t] = contact_side_of(layout, pair->cells[t], coordinates + 12 * t);
+    contact_side_locate(&sides[t], vec3_at(field->centroid), lambda + 4 * t);
+  }
+  find_means(layout, pair, sides, field, by, &means);
+  pull_sides(sides, &means, own);
+  pull_volume(sides, lambda, field->volume, &means, own);
+  pull_faces(&clipped, &means, own);
+  fold_slopes(layout, pair, own, slope);
+}
+
+// F = Σ f_v, λ_v = f_v · F / F · F: from the forces on the vertices, whose derivatives are the Hessian.
+void contact_field_pull_shape(const ContactLayout *layout, const ContactPair *pair, double time,
+                              const double tet[12], const ContactFieldPair *field, const double forces[12],
+                              const ContactFieldSlopes *by, double slope[12]) {
+  const ContactShape *shape = &layout->def.shapes[layout->interfaces[pair->interface].shape];
+  double matrix[144], gradient[12], by_force[12], volume, of_volume, of_energy;
+  Vec3 force = vec3_at(field->force), force_slope = vec3_at(by->force);
+  double square = vec3_dot(force, force);
+  if (!(square > 0)) return;
+  pull_area(field, by->area, &force_slope, &of_volume, &of_energy);
+  for (int v = 0; v < 4; v++) {
+    Vec3 across = vec3_sub(vec3_at(forces + 3 * v), vec3_scale(2 * field->weights[0][v], force));
+    force_slope = vec3_add(force_slope, vec3_scale(by->weights[0][v] / square, across));
+  }
+  for (int v = 0; v < 4; v++)
+    vec3_store(by_force + 3 * v, vec3_add(force_slope, vec3_scale(by->weights[0][v] / square, force)));
+  contact_field_bend_shape(layout, pair, time, tet, true, matrix);
+  contact_shape_overlap(shape, time, tet, &volume, gradient);
+  for (int i = 0; i < 12; i++) {
+    double sum = 0;
+    for (int k = 0; k < 12; k++) sum += matrix[12 * i + k] * by_force[k];
+    slope[i] += of_volume * gradient[i] - of_energy * forces[i] - sum;
+  }
+}

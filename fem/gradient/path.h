@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Derivatives dg/dp at the end of a path of steps, where the last state alone does not tell them: of a motion
+// without damping, of a static scene with friction. They are those of a replay (fem/gradient/replay.h), by
+// its discrete adjoint. Backwards, with λ = −β, s_n = M (a₁ β_{n+1} + a₂ β_{n+2}), whose coefficients are
+// those of steps n + 1, n + 2, J = −∂f/∂u, and q what friction remembers after a step
+// (contact/friction/stick_pull.h):
+//
+//   (J + c² M)ᵀ β_n = −∂g/∂u − ū_n − (∂q_n/∂u)ᵀ q̄_n − c s_n − a₁ α_{n+1} − a₂ α_{n+2},   α_n = c M β_n + s_n
+//   ū_{n−1} = (∂f/∂u_{n−1})ᵀ λ_n + (∂q_n/∂u_{n−1})ᵀ q̄_n,   q̄_{n−1} = (∂f/∂q_{n−1})ᵀ λ_n + (∂q_n/∂q_{n−1})ᵀ
+//   q̄_n dg/dp = ∂g/∂p + Σ λ_n · (∂f/∂p − ∂M/∂p v̇_n) + q̄_n · ∂q_n/∂p
+//
+// Without friction J is the matrix; with it J is not symmetric, and its transpose is applied exactly, by
+// GMRES with the factor of the matrix. How the steps themselves depend on p is left out, as it is in every
+// derivative of a run. A vertex that changes between sticking and slipping within a step makes g one-sided
+// there.
+#ifndef TETLAP_FEM_GRADIENT_PATH_H
+#define TETLAP_FEM_GRADIENT_PATH_H
+
+#include "fem/gradient/gradient.h"
+#include "fem/gradient/replay.h"
+
+// STATUS_INPUT: what cannot be differentiated in this scene; the message says what and why.
+Status fem_path_check(const FemModel *model, const FemGradientDef *def);
+// STATUS_SOLVER: a step of the replay cannot be balanced, or the adjoint has no solution there; the message
+// says which step. Destroy the gradient also after a failure.
+Status fem_path_differentiate(FemGradient *gradient, const FemModel *model, const FemGradientDef *def,
+                              const FemReplaySteps *steps);
+
+#endif

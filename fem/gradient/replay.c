@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/gradient/replay.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "fem/effect/contact/contact.h"
+#include "fem/effect/contact/stick.h"
+
+enum { MAX_ITERATIONS = 30, STICKS = 1, SLIPS = 2 };
+// A step is balanced once Newton's method does not halve what is left, which is then at most this share of
+// the largest force.
+static const double LEAST_FALL = 0.5, BALANCE = 1e-9;
+// Of a system that GMRES solves, the share of the right side that may be left; and how far coordinates move
+// for a difference of forces, as a share of the mean edge.
+static const double INEXACT = 1e-4, WAY = 1e-7;
+
+// ---- Steps.
+
+static Status add(FemReplaySteps *steps, const FemSystem *system, const FemState *state) {
+  size_t n = (size_t)system->numbering.count, count = (size_t)steps->count;
+  bool is_static = system->model->scene->is_static;
+  bool fits = memory_reserve((void **)&steps->times, &steps->time_capacity, count + 1, sizeof(double));
+  if (is_static)
+    fits = fits && memory_reserve((void **)&steps->u, &steps->capacity, (count + 1) * n, sizeof(double));
+  if (!fits) return status_no_memory("the steps of a run");
+  for (size_t i = 0; i < n && is_static; i++) {
+    int dof = system->numbering.dof_of_unknown[i];
+    steps->u[count * n + i] = state ? state->positions[dof] - system->model->rest[dof] : 0;
+  }
+  steps->unknown_count = (int)n;
+  steps->times[steps->count++] = state ? state->time : 0;
+  return STATUS_OK;
+}
+
+Status fem_replay_steps_add(FemReplaySteps *steps, const FemSystem *system) {
+  if (steps->count == 0) TRY(add(steps, system, NULL));
+  bool is_new = system->accepted.time > steps->times[steps->count - 1];
+  return is_new ? add(steps, system, &system->accepted) : STATUS_OK;
+}
+
+void fem_replay_steps_destroy(FemReplaySteps *steps) {
+  memory_free(steps->times);
+  memory_free(steps->u);
+  *steps = (FemReplaySteps){0};
+}
+
+FemReplayFormula fem_replay_formula(const FemReplay *replay, int k) {
+  const FemReplaySteps *steps = replay->steps;
+  if (k >= steps->count || replay->system.model->scene->is_static) return (FemReplayFormula){0, 0, 0};
+  const double *t = steps->times + k;
+  double h = t[0] - t[-1];
+  if (k == 1) return (FemReplayFormula){1 / h, -1 / h, 0};
+  double ratio = h / (t[-1] - t[-2]);
+  return (FemReplayFormula){(1 + 2 * ratio) / (1 + ratio) / h, -(1 + ratio) / h,
+                            ratio * ratio / (1 + ratio) / h};
+}
+
+double fem_replay_mass(const FemReplay *replay, int unknown) {
+  return replay->system.model->mass[replay->system.numbering.dof_of_unknown[unknown] / 3];
+}
+
+Status fem_replay_end(const FemReplay *replay, int k, Status status) {
+  if (status != STATUS_RETRY) return status;
+  char why[512];
+  snprintf(why, sizeof why, "%s", status_message());
+  return status_fail(STATUS_SOLVER, "the replay's step to t = %.9g s: %s", replay->steps->times[k], why);
+}
+
+// ---- Room.
+
+static Status multiply(void *self, const double *x, double *y);
+
+static Status precondition(void *self, const double *x, double *y) {
+  return fem_equilibrium_solve(&((FemReplay *)self)->equilibrium, x, y);
+}
+
+static Status create_friction(FemReplay *replay) {
+  FemSystem *system = &replay->system;
+  replay->stick = fem_system_effect(system, &fem_effect_stick);
+  if (!replay->stick) return STATUS_OK;
+  const ContactSystem *contact = fem_effect_contact_system(fem_system_effect(system, &fem_effect_contact));
+  const ContactLayout *layout = contact_system_layout(contact);
+  size_t marks = (size_t)layout->interface_count * (size_t)layout->def.vertex_count;
+  replay->slips = memory_zeroed(marks, 1);
+  replay->ahead = memory_zeroed((size_t)replay->n, sizeof(double));
+  replay->aside = memory_zeroed((size_t)replay->n, sizeof(double));
+  if (!replay->slips || !replay->ahead || !replay->aside) return status_no_memory("the replay of a run");
+  replay->krylov = (FemKrylov){.self = replay, .multiply = multiply, .precondition = precondition};
+  return fem_krylov_create(&replay->krylov, replay->n);
+}
+
+Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemReplaySteps *steps) {
+  *replay = (FemReplay){.steps = steps};
+  TRY(fem_system_create(&replay->system, model));
+  replay->n = replay->system.numbering.count;
+  size_t n = (size_t)replay->n, count = (size_t)steps->count;
+  replay->u = memory_zeroed(count * n, sizeof(double));
+  replay->v = memory_zeroed(count * n, sizeof(double));
+  replay->force = memory_zeroed(n, sizeof(double));
+  replay->step = memory_zeroed(n, sizeof(double));
+  replay->histories = memory_zeroed(count * FEM_MAX_EFFECTS, sizeof *replay->histories);
+  if (!replay->u || !replay->v || !replay->force || !replay->step || !replay->histories)
+    return status_no_memory("the replay of a run");
+  if (steps->u && steps->unknown_count != replay->n)
+    return status_fail(STATUS_INPUT, "the steps are of a run with %d unknowns, the replay has %d",
+                       steps->unknown_count, replay->n);
+  TRY(fem_system_create_state(&replay->system, &replay->before));
+  TRY(fem_system_create_state(&replay->system, &replay->state));
+  TRY(create_friction(replay));
+  return fem_equilibrium_create(&replay->equilibrium, &replay->system, &replay->state, &fem_solver_cholmod);
+}
+
+void fem_replay_destroy(FemReplay *replay) {
+  for (int i = 0; replay->histories && i < replay->steps->count * FEM_MAX_EFFECTS; i++)
+    fem_effect_history_destroy(&replay->histories[i]);
+  fem_krylov_destroy(&replay->krylov);
+  fem_equilibrium_destroy(&replay->equilibrium);
+  for (int i = 0; i < FEM_MAX_EFFECTS; i++) replay->before.histories[i] = (FemEffectHistory){0}; // borrowed
+  fem_state_destroy(&replay->before);
+  fem_state_destroy(&replay->state);
+  fem_system_destroy(&replay->system);
+  void *arrays[] = {replay->u,     replay->v,     replay->force,     replay->step,
+                    replay->ahead, replay->aside, replay->histories, replay->slips};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
+  *replay = (FemReplay){0};
+}
+
+// ---- A step.
+
+// Forces at u, where lists follow if the way was long.
+static Status find_forces(FemReplay *replay, double time, const double *u, double *force) {
+  Status status = fem_equilibrium_forces(&replay->equilibrium, time, u, force);
+  if (status != STATUS_RETRY) return status;
+  TRY(fem_equilibrium_renew(&replay->equilibrium, time, u));
+  return fem_equilibrium_forces(&replay->equilibrium, time, u, force);
+}
+
+// f − M v̇ at u of step k into `force`; the largest value.
+static Status find_residual(FemReplay *replay, int k, double *left) {
+  FemReplayFormula formula = fem_replay_formula(replay, k);
+  size_t n = (size_t)replay->n;
+  double *u = replay->u + n * (size_t)k, *v = replay->v + n * (size_t)k;
+  TRY(find_forces(replay, replay->steps->times[k], u, replay->force));
+  for (size_t i = 0; i < n; i++) {
+    double far_u = k > 1 ? u[i - 2 * n] : 0, far_v = k > 1 ? v[i - 2 * n] : 0;
+    v[i] = formula.c * u[i] + formula.near * u[i - n] + formula.far * far_u;
+    replay->force[i] -=
+        fem_replay_mass(replay, (int)i) * (formula.c * v[i] + formula.near * v[i - n] + formula.far * far_v);
+  }
+  *left = fem_equilibrium_largest(replay->force, replay->n);
+  return STATUS_OK;
+}
+
+// What forces and changes of momentum within a step are measured by [N].
+static double scale_of(const FemReplay *replay, int k, double c) {
+  const double *v = replay->v + (size_t)replay->n * (size_t)k;
+  double scale = fem_equilibrium_largest(replay->system.forces, 3 * replay->system.model->vertex_count);
+  for (int i = 0; i < replay->n; i++) scale = fmax(scale, fem_replay_mass(replay, i) * c * fabs(v[i]));
+  return scale;
+}
+
+// (−∂f/∂u + c² M) x by a difference of forces.
+static Status multiply(void *self, const double *x, double *y) {
+  FemReplay *replay = self;
+  int n = replay->n;
+  double largest = fem_equilibrium_largest(x, n), time = replay->state.time;
+  double share = WAY * replay->system.model->edge / largest;
+  memset(y, 0, (size_t)n * sizeof *y);
+  if (!(largest > 0)) return STATUS_OK;
+  for (int side = 1; side >= -1; side -= 2) {
+    for (int i = 0; i < n; i++) replay->ahead[i] = replay->middle[i] + side * share * x[i];
+    TRY(find_forces(replay, time, replay->ahead, replay->aside));
+    for (int i = 0; i < n; i++) y[i] -= side * replay->aside[i] / (2 * share);
+  }
+  for (int i = 0; i < n; i++) y[i] += replay->c * replay->c * fem_replay_mass(replay, i) * x[i];
+  return STATUS_OK;
+}
+
+// Newton's step from u, whose residual is in `force`.
+static Status find_step(FemReplay *replay, double time, const double *u, double c) {
+  double residual;
+  TRY(fem_equilibrium_factorise(&replay->equilibrium, time, u, c * c));
+  if (!replay->stick) return fem_equilibrium_solve(&replay->equilibrium, replay->force, replay->step);
+  replay->c = c;
+  replay->middle = u;
+  return fem_krylov_solve(&replay->krylov, replay->force, INEXACT, replay->step, &residual);
+}
+
+static Status balance(FemReplay *replay, int k) {
+  double c = fem_replay_formula(replay, k).c, time = replay->steps->times[k], left;
+  size_t n = (size_t)replay->n;
+  double *u = replay->u + n * (size_t)k;
+  TRY(find_residual(replay, k, &left));
+  for (int i = 0; i < MAX_ITERATIONS && left > 0; i++) {
+    double last = left;
+    TRY(find_step(replay, time, u, c));
+    for (size_t j = 0; j < n; j++) u[j] += replay->step[j];
+    TRY(find_residual(replay, k, &left));
+    double scale = scale_of(replay, k, c);
+    if (!(left <= BALANCE * scale) || left <= LEAST_FALL * last) continue;
+    replay->worst = fmax(replay->worst, left / scale);
+    return STATUS_OK;
+  }
+  if (!(left > 0)) return STATUS_OK;
+  return status_fail(STATUS_SOLVER, "the replay's step to t = %.9g s cannot be balanced", time);
+}
+
+// ---- All steps.
+
+// Counts vertices that slip and stuck in the step before, and the other way round.
+static Status count_switches(FemReplay *replay) {
+  const ContactStick *law;
+  if (!replay->stick) return STATUS_OK;
+  TRY(fem_effect_stick_evaluate(replay->stick, &replay->state, &law));
+  size_t vertices = (size_t)law->vertex_count, marks = vertices * (size_t)law->interface_count;
+  for (size_t i = 0; i < marks; i++) replay->slips[i] <<= 4; // what was, above what is
+  for (int k = 0; k < law->node_count; k++) {
+    const ContactStickNode *node = &law->nodes[k];
+    replay->slips[vertices * (size_t)node->interface + (size_t)node->vertex] |= node->slips ? SLIPS : STICKS;
+  }
+  for (size_t i = 0; i < marks; i++) {
+    int was = replay->slips[i] >> 4, is = replay->slips[i] & 15;
+    replay->switches += was && is && was != is;
+    replay->slips[i] = (unsigned char)is;
+  }
+  return STATUS_OK;
+}
+
+static Status keep_histories(FemReplay *replay, int k) {
+  for (int e = 0; e < replay->system.effect_count; e++) {
+    const FemEffectHistory *history = &replay->system.accepted.histories[e];
+    TRY(fem_effect_history_set(&replay->histories[k * FEM_MAX_EFFECTS + e], history->values, history->count));
+  }
+  return STATUS_OK;
+}
+
+static void guess(FemReplay *replay, int k) {
+  size_t n = (size_t)replay->n;
+  const double *t = replay->steps->times, *found = replay->steps->u;
+  double *u = replay->u + n * (size_t)k, *v = replay->v + n * (size_t)k;
+  if (found) memcpy(u, found + n * (size_t)k, n * sizeof *u);
+  for (size_t i = 0; i < n && !found; i++) u[i] = u[i - n] + (t[k] - t[k - 1]) * v[i - n];
+}
+
+static Status step(FemReplay *replay, int k) {
+  const double *t = replay->steps->times;
+  size_t n = (size_t)replay->n;
+  guess(replay, k);
+  TRY(balance(replay, k));
+  fem_system_scatter(&replay->system, t[k], replay->u + n * (size_t)k, replay->v + n * (size_t)k,
+                     &replay->state);
+  TRY(count_switches(replay));
+  TRY(fem_system_accept(&replay->system, &replay->state, k + 1 < replay->steps->count ? t[k + 1] - t[k] : 0));
+  return keep_histories(replay, k);
+}
+
+Status fem_replay_go(FemReplay *replay) {
+  fem_system_gather(&replay->system, &replay->system.accepted, replay->u, replay->v);
+  TRY(keep_histories(replay, 0));
+  for (int k = 1; k < replay->steps->count; k++) TRY(fem_replay_end(replay, k, step(replay, k)));
+  return STATUS_OK;
+}
+
+// The accepted state of step k, its histories borrowed.
+static void recall(FemReplay *replay, int k, FemState *state) {
+  size_t n = (size_t)replay->n;
+  fem_system_scatter(&replay->system, replay->steps->times[k], replay->u + n * (size_t)k,
+                     replay->v + n * (size_t)k, state);
+  memcpy(state->histories, replay->histories + k * FEM_MAX_EFFECTS, sizeof state->histories);
+  state->version = fem_state_new_version();
+  state->last = state;
+}
+
+Status fem_replay_return(FemReplay *replay, int k) {
+  double c = fem_replay_formula(replay, k).c, time = replay->steps->times[k];
+  double *u = replay->u + (size_t)replay->n * (size_t)k;
+  recall(replay, k > 0 ? k - 1 : 0, &replay->before);
+  replay->state.last = &replay->before;
+  TRY(fem_equilibrium_renew(&replay->equilibrium, time, u));
+  if (k == 0) return fem_system_couple(&replay->system, &replay->state);
+  return fem_equilibrium_factorise(&replay->equilibrium, time, u, c * c);
+}

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A run done again with the ends of its steps frozen, each step balanced to rounding. A motion goes by
+// backward differences of second order (the first step of first order),
+//
+//   v_n = c u_n + a₁ u_{n−1} + a₂ u_{n−2},   M (c v_n + a₁ v_{n−1} + a₂ v_{n−2}) = f(u_n, t_n; history),
+//
+// a static scene from equilibrium to equilibrium (c = a₁ = a₂ = 0). The replay differs from the run by the
+// error of its steps. Friction's matrix is not exact, so where there is friction Newton's method solves its
+// systems by GMRES on differences of forces.
+#ifndef TETLAP_FEM_GRADIENT_REPLAY_H
+#define TETLAP_FEM_GRADIENT_REPLAY_H
+
+#include "fem/effect/system.h"
+#include "fem/gradient/krylov.h"
+#include "fem/statics/equilibrium.h"
+
+// The ends of a run's steps, from 0 on.
+typedef struct FemReplaySteps {
+  double *times; // [s], owned                                              (count)
+  double *u;     // of a static scene, where each step's solution is looked for first; owned  (count, n)
+  int count, unknown_count;
+  size_t time_capacity, capacity;
+} FemReplaySteps;
+
+// The system's accepted state, if it is a new one. STATUS_MEMORY.
+Status fem_replay_steps_add(FemReplaySteps *steps, const FemSystem *system);
+void fem_replay_steps_destroy(FemReplaySteps *steps); // also of a zeroed one
+
+// ẏ_n = c y_n + near y_{n−1} + far y_{n−2}
+typedef struct FemReplayFormula {
+  double c, near, far;
+} FemReplayFormula;
+
+typedef struct FemReplay {
+  const FemReplaySteps *steps; // borrowed
+  FemSystem system;
+  FemState before, state; // of the step before, and the one under trial
+  FemEquilibrium equilibrium;
+  FemKrylov krylov;            // where there is friction
+  void *stick;                 // friction's effect, borrowed; NULL: none
+  int n;                       // unknowns
+  double *u, *v;               // of all steps                              (count, n)
+  double *force, *step;        // scratch                                   (n)
+  double *ahead, *aside;       // scratch, where there is friction          (n)
+  FemEffectHistory *histories; // of all steps                              (count, FEM_MAX_EFFECTS)
+  unsigned char *slips;        // 0: apart, 1: sticks, 2: slips             (interfaces, contact vertices)
+  double worst;                // what is left in a step, as a share of the largest force
+  long long switches;          // between sticking and slipping, of vertices from step to step
+  double c;                    // of the step that is balanced
+  const double *middle;        // its u
+} FemReplay;
+
+Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemReplaySteps *steps);
+void fem_replay_destroy(FemReplay *replay); // also of a zeroed one
+
+// STATUS_SOLVER: a step cannot be balanced; the message says which.
+Status fem_replay_go(FemReplay *replay);
+// Step k as it was found: `state` is there, `before` at step k − 1, the matrix K + c² M is factorised. Of
+// step 0 nothing is.
+Status fem_replay_return(FemReplay *replay, int k);
+
+// Of step k; beyond the steps, and of a static scene, 0.
+FemReplayFormula fem_replay_formula(const FemReplay *replay, int k);
+double fem_replay_mass(const FemReplay *replay, int unknown); // [kg]
+// A failure of step k, with its time; nothing is tried again.
+Status fem_replay_end(const FemReplay *replay, int k, Status status);
+
+#endif

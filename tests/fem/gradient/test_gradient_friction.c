@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Gradients with friction against central differences of replays with the same steps.
+#include "replays.h"
+
+START_TEST(a_block_that_is_rubbed_agrees_with_differences_of_replays) {
+  const Asked asked = {.scene = "gradient_rub",
+                       .setting = "time.end=1",
+                       .tolerance = 1e-6,
+                       .least_steps = 7,
+                       .least_switches = 20,
+                       .of = {"displacement:lower:x", "probe:top:x", "force:upper:lower:x",
+                              "reaction:upper:driven[0]:y", "energy"},
+                       .by = {"bodies.lower.material.young", "bodies.upper.material.poisson",
+                              "contact.friction", "contact.stiffness", "bodies.upper.driven[0].table[2][1]",
+                              "bodies.upper.driven[0].table[1][3]", "bodies.upper.place.translate[1]"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
+START_TEST(a_slab_between_obstacles_agrees_with_differences_of_replays) {
+  const Asked asked = {.scene = "gradient_drag",
+                       .setting = "time.end=1",
+                       .tolerance = 1e-6,
+                       .least_steps = 6,
+                       .least_switches = 20,
+                       .of = {"displacement:slab:y", "force:slab:block:x", "force:floor:slab:y",
+                              "moment:slab:block:z", "reaction:slab:fixed[0]:y"},
+                       .by = {"bodies.slab.material.young", "contact.friction", "contact.pairs[0].friction",
+                              "contact.pairs[0].stiffness", "obstacles.block.motion.table[2][2]",
+                              "obstacles.floor.motion.velocity[1]", "obstacles.block.box.centre[1]",
+                              "bodies.slab.loads[0].traction[1]"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
+// Where it ends in contact, pairs that begin to overlap within a difference make kinks in the force.
+START_TEST(a_block_that_sticks_and_slips_in_motion_agrees_with_differences_of_replays) {
+  const Asked asked = {.scene = "gradient_slide",
+                       .setting = "time.end=0.03",
+                       .tolerance = 3e-6,
+                       .least_switches = 10,
+                       .of = {"displacement:upper:x", "position:upper:3:z", "force:upper:lower:x",
+                              "moment:upper:lower:y", "reaction:lower:driven[0]:x"},
+                       .by = {"bodies.upper.material.density", "bodies.upper.velocity[0]", "contact.friction",
+                              "bodies.lower.driven[0].amplitude[0]"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
+int main(void) {
+  TCase *test_case = tcase_create("gradient_friction");
+  tcase_add_test(test_case, a_block_that_is_rubbed_agrees_with_differences_of_replays);
+  tcase_add_test(test_case, a_slab_between_obstacles_agrees_with_differences_of_replays);
+  tcase_add_test(test_case, a_block_that_sticks_and_slips_in_motion_agrees_with_differences_of_replays);
+  return suite_run("gradient_friction", test_case, 600);
+}
