@@ -13,6 +13,7 @@
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/output/columns.h"
+#include "fem/output/moments.h"
 #include "fem/output/reactions.h"
 #include "fem/output/stress.h"
 #include "fem/output/vtk/pvd.h"
@@ -75,6 +76,13 @@ static Status add_columns(FemRecorder *recorder) {
     for (int c = 0; c < 3; c++)
       TRY(fem_history_add_column(history, "contact_centre_%s_%s_%c_m", a, b, "xyz"[c]));
   }
+  for (int i = 0; i < count; i++)
+    for (int c = 0; c < 3; c++)
+      TRY(fem_history_add_column(history, "moment_%s_%s_%c_Nm",
+                                 fem_effect_contact_name(effect, interfaces[i].a),
+                                 fem_effect_contact_name(effect, interfaces[i].b), "xyz"[c]));
+  recorder->moments = memory_zeroed((size_t)count, sizeof *recorder->moments);
+  if (!recorder->moments) return status_no_memory("the history");
   TRY(add_friction_columns(recorder));
   TRY(fem_probes_add_columns(history, model));
   recorder->row = memory_zeroed((size_t)history->column_count, sizeof *recorder->row);
@@ -144,6 +152,7 @@ void fem_recorder_destroy(FemRecorder *recorder) {
   fem_forces_destroy(&recorder->forces);
   fem_ledger_destroy(&recorder->ledger);
   fem_probes_destroy(&recorder->probes);
+  memory_free(recorder->moments);
   memory_free(recorder->reaction);
   memory_free(recorder->det_F);
   memory_free(recorder->overlap);
@@ -471,6 +480,8 @@ static Status fill_row(FemRecorder *recorder, FemColumnSource source) {
     row[0] = recorder->forces.areas[i];
     vec3_store(row + 1, vec3_at(recorder->forces.centres[i]));
   }
+  TRY(fem_moments_find(recorder->system, source.state, recorder->moments));
+  for (int i = 0; i < count; i++, row += 3) vec3_store(row, vec3_at(recorder->moments[i]));
   row = append_friction(recorder, row);
   fem_probes_fill(&recorder->probes, row);
   return STATUS_OK;

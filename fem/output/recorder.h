@@ -32,6 +32,7 @@ typedef struct FemRecorder {
   FemForces forces;            // of the state that was measured last
   FemLedger ledger;
   FemProbes probes;
+  double (*moments)[3];    // scratch: of the interfaces about the origin [N m]; NULL: no history
   double *reaction;        // scratch; NULL: nothing is prescribed (vertex_count, 3)
   double *det_F, *overlap; // scratch                          (tet_count)
   FemTroubleWatch watch;

@@ -453,6 +453,30 @@ START_TEST(friction_work_of_vertices_is_the_work_of_the_run) {
 }
 END_TEST
 
+// The moment of a contact is that of the forces on the first body's vertices.
+START_TEST(moments_of_contacts_are_those_of_the_forces_at_vertices) {
+  SceneRun run;
+  FemVtuContent frame;
+  Vec3 sum = {0, 0, 0};
+  run_to_last_frame(&run, "drag",
+                    (const char *const[]){"output.vtu=true", "output.frames=4", "time.end=0.4", NULL},
+                    &frame);
+  const double *contact = find_field(&frame, "contact_force"),
+               *friction = find_field(&frame, "friction_force");
+  for (int v = run.model.bodies[0].vertex_begin; v < run.model.bodies[0].vertex_end; v++) {
+    size_t at = 3 * (size_t)v;
+    Vec3 force = vec3_add(vec3_at(contact + at), vec3_at(friction + at));
+    sum = vec3_add(sum, vec3_cross(vec3_at(frame.positions + at), force));
+  }
+  double size = vec3_length(sum);
+  ck_assert_double_gt(size, 0.1);
+  ck_assert_near(last_value("moment_slider_base_x_Nm"), sum.x, 1e-9 * size);
+  ck_assert_near(last_value("moment_slider_base_y_Nm"), sum.y, 1e-9 * size);
+  ck_assert_near(last_value("moment_slider_base_z_Nm"), sum.z, 1e-9 * size);
+  close_last_frame(&run, &frame);
+}
+END_TEST
+
 // What has not begun to slide sticks, on both sides, and has done no work by slip.
 START_TEST(what_does_not_slide_is_told_to_stick) {
   SceneRun run;
@@ -525,6 +549,7 @@ int main(void) {
   TCase *test_case = tcase_create("frame_state");
   tcase_add_test(test_case, where_all_slides_the_traction_has_mu_times_the_pressure);
   tcase_add_test(test_case, friction_work_of_vertices_is_the_work_of_the_run);
+  tcase_add_test(test_case, moments_of_contacts_are_those_of_the_forces_at_vertices);
   tcase_add_test(test_case, what_does_not_slide_is_told_to_stick);
   tcase_add_test(test_case, a_gap_is_the_distance_of_what_does_not_touch_yet);
   tcase_add_test(test_case, pressure_is_told_on_surfaces_that_are_made_smooth);
