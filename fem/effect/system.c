@@ -153,7 +153,9 @@ static Status begin_at_accepted(FemSystem *system, double step) {
   TRY(couple_effects(system, &system->accepted, true, NULL));
   if (system->numbering.count == 0) return STATUS_OK;
   bool fits = fem_matrix_fits(&system->matrix, system->pattern, system->numbering.unknown_of_dof);
-  return fits && !system->model->share ? STATUS_OK : lay_out(system);
+  if (!fits || system->model->share) return lay_out(system);
+  system->pattern_version++; // as if it had been laid out
+  return STATUS_OK;
 }
 
 static Status create(FemSystem *system) {
@@ -186,11 +188,13 @@ static Status create_again(FemSystem *system) {
   fem_numbering_renew(numbering, system->model);
   memset(system->costs, 0, sizeof system->costs);
   system->layout_s = 0;
+  system->pattern_version = 0;
   system->stop = NULL;
   fem_state_destroy(&system->accepted);
   TRY(create_accepted(system));
   for (int i = 0; i < system->effect_count; i++) TRY(create_effect_again(&system->effects[i], system->model));
-  return connect_effects(system);
+  TRY(connect_effects(system));
+  return start_histories(system);
 }
 
 Status fem_system_create_again(FemSystem *system) {

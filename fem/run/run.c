@@ -179,7 +179,8 @@ static Status begin_part(FemRunState *run) {
   run->next_step = from->step;
   run->least_power = INFINITY;
   TRY(fem_formulas_check(run->model, run->time));
-  TRY(is_first ? fem_system_create(&run->system, run->model) : fem_system_create_again(&run->system));
+  if (is_first) TRY(fem_system_create(&run->system, run->model));
+  TRY(fem_system_create_again(&run->system)); // the first, too: what is counted is the same
   run->system.stop = run->options->stop;
   TRY(create_states(run));
   TRY(release(run));
