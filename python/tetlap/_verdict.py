@@ -30,7 +30,20 @@ class Verdict:
         self.grades = {use: (grade["fit"], grade["reason"]) for use, grade in row["grades"].items()}
         self.contract, self.pairs, self.unseen, self.runs = row["contract"], row["pairs"], row["unseen"], row["runs"]
 
-    detect, forces, motion = (property(lambda self, use=use: self.grades[use][0]) for use in _USES)
+    @property
+    def detect(self) -> bool:
+        """Whether it is fit to detect overlaps."""
+        return self.grades["detect"][0]
+
+    @property
+    def forces(self) -> bool:
+        """Whether it is fit for forces at given states."""
+        return self.grades["forces"][0]
+
+    @property
+    def motion(self) -> bool:
+        """Whether it is fit to drive a motion."""
+        return self.grades["motion"][0]
 
     def run(self, scene: str) -> Run:
         """The model's run of a scene."""
