@@ -49,7 +49,8 @@ void fem_replay_steps_destroy(FemReplaySteps *steps) {
 
 FemReplayFormula fem_replay_formula(const FemReplay *replay, int k) {
   const FemReplaySteps *steps = replay->steps;
-  if (k >= steps->count || replay->system.model->scene->is_static) return (FemReplayFormula){0, 0, 0};
+  if (k < 1 || k >= steps->count || replay->system.model->scene->is_static)
+    return (FemReplayFormula){0, 0, 0};
   const double *t = steps->times + k;
   double h = t[0] - t[-1];
   if (k == 1) return (FemReplayFormula){1 / h, -1 / h, 0};

@@ -59,7 +59,7 @@ Status fem_replay_go(FemReplay *replay);
 // step 0 nothing is.
 Status fem_replay_return(FemReplay *replay, int k);
 
-// Of step k; beyond the steps, and of a static scene, 0.
+// Of step k; before and beyond the steps, and of a static scene, 0.
 FemReplayFormula fem_replay_formula(const FemReplay *replay, int k);
 double fem_replay_mass(const FemReplay *replay, int unknown); // [kg]
 // A failure of step k, with its time; nothing is tried again.
