@@ -235,6 +235,27 @@ const tests = {
     await page.eval(`tetlap.state.set({ field: "von_mises" })`);
   },
 
+  async "a class is painted as it is at vertices, and nothing between two of them"(page) {
+    await page.eval("tetlap.transport.seek(14)");
+    await page.eval(`tetlap.state.set({ field: "contact_status" })`);
+    await page.until(`tetlap.stage.fields.some((field) => field?.name === "contact_status")`);
+    const legend = await page.eval(`[...document.querySelectorAll(".legend .class:not(.obstacles)")].map((one) => one.textContent)`);
+    assert.deepEqual(legend, ["open", "sticks", "slides"]);
+    const codes = await page.eval(`[...new Set(tetlap.stage.views[0].surface.geometry.getAttribute("codes").array)].sort()`);
+    assert.deepEqual(codes, [0, 2]); // without friction what touches slides
+    // The colours of what sticks are redder than they are blue; none of the others is, and edges are grey.
+    const sticks = await page.eval(`(() => {
+      tetlap.stage.renderNow();
+      const { canvas } = tetlap.stage.views[0], gl = canvas.getContext("webgl2"), bytes = new Uint8Array(4 * canvas.width * canvas.height);
+      gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+      let count = 0;
+      for (let k = 0; k < bytes.length; k += 4) count += bytes[k] > bytes[k + 2] + 40;
+      return count;
+    })()`);
+    assert.equal(sticks, 0);
+    await page.eval(`tetlap.state.set({ field: "von_mises" })`);
+  },
+
   async "plots have a line for each quantity and all its points"(page) {
     const plots = await page.eval(`tetlap.plots.map(({ plot, element }) => ({ id: plot.id, series: plot.series.length,
       lines: element.querySelectorAll("g[aria-label=line] path").length, dots: element.querySelectorAll(".dot").length,
@@ -287,6 +308,11 @@ const tests = {
   async "says where the time went, in full"(page, { runs }) {
     const { phases } = JSON.parse(readFileSync(join(runs[0], "summary.json"), "utf8"));
     assert.equal(await page.eval(`document.querySelectorAll("#phases .row:first-child .piece").length`), Object.keys(phases).length);
+    const named = await page.eval(`[...document.querySelectorAll("#phases .row:first-child .piece")].map(({ title }) => title)`);
+    named.forEach((title) => assert.match(title, /^[A-Z]/)); // a phase that the page does not know has its key
+    const drawn = await page.eval(`[...document.querySelectorAll("#phases .piece")].map((piece) => getComputedStyle(piece).backgroundColor)`);
+    const paper = await page.eval("getComputedStyle(document.body).backgroundColor");
+    drawn.forEach((colour) => assert.ok(colour !== paper && colour !== "rgba(0, 0, 0, 0)", colour));
     const { effects } = JSON.parse(readFileSync(join(runs[0], "summary.json"), "utf8"));
     assert.deepEqual(
       [...new Set(await page.eval(`[...document.querySelectorAll("#phases tr[data-effect]")].map((row) => row.dataset.effect)`))],
@@ -359,7 +385,7 @@ const obstacleTests = {
       return [shown, hidden];
     })()`);
     assert.notEqual(pictures[0], pictures[1]);
-    const codes = await page.eval(`[...new Set(tetlap.stage.views[0].solids.geometry.getAttribute("code").array)]`);
+    const codes = await page.eval(`[...new Set(tetlap.stage.views[0].solids.geometry.getAttribute("codes").array)]`);
     assert.deepEqual(codes, [65535]);
   },
 

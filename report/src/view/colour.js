@@ -36,6 +36,15 @@ const FIELDS = {
   contact_pressure: { label: "Contact pressure", unit: "Pa" },
   contact_traction: { label: "Contact traction", unit: "Pa" },
   contact_depth: { label: "Contact depth", unit: "m" },
+  contact_gap: { label: "Contact gap", unit: "m" },
+  contact_status: { label: "Contact status", isClass: true, classes: ["open", "sticks", "slides"] },
+  friction_force: { label: "Friction force", unit: "N" },
+  slip: { label: "Slip", unit: "m" },
+  slip_way: { label: "Accumulated slip", unit: "m" },
+  friction_work: { label: "Friction work", unit: "J" },
+  reaction: { label: "Reaction", unit: "N" },
+  trouble: { label: "Trouble", isClass: true, classes: ["none", "inverted", "enclosed", "inverted and enclosed"] },
+  wrong_way: { label: "Contact pulls outwards", isClass: true, classes: ["no", "yes"] },
   overlap_fraction: { label: "Overlap fraction", unit: "" },
   det_F: { label: "Volume ratio det F", unit: "", middle: 1 },
   velocity: { label: "Speed", unit: "m/s" },
@@ -47,7 +56,7 @@ const FIELDS = {
   body: { label: "Body", unit: "", isClass: true },
 };
 
-const ORDER = ["von_mises", "contact_force", "contact_pressure", "contact_traction", "contact_depth", "overlap_fraction", "status_predicted", "status_exact", "status_error", "status_wrong_pairs", "det_F", "pressure", "velocity", "displacement", "body"];
+const ORDER = ["von_mises", "contact_force", "contact_pressure", "contact_traction", "contact_depth", "contact_gap", "contact_status", "overlap_fraction", "status_predicted", "status_exact", "status_error", "status_wrong_pairs", "det_F", "pressure", "velocity", "displacement", "body"];
 
 export function describe(field) {
   const known = FIELDS[field.name];

@@ -29,12 +29,13 @@ import { createRoom, outlineOf, sectionOf } from "./cut.js";
 import { LEVELS, NO_CODE, decode } from "../data/codes.js";
 
 const VERTEX = `
-  in float code;
-  in vec3 weight;
-  out float vCode;
-  out vec3 vWeight, vView, vPlace;
+  in vec3 codes, weight;
+  flat out vec3 vCodes;
+  out vec3 vShares, vWeight, vView, vPlace;
   void main() {
-    vCode = code;
+    vCodes = codes;
+    int corner = gl_VertexID % 3;
+    vShares = vec3(corner == 0, corner == 1, corner == 2);
     vWeight = weight;
     vPlace = position;
     vec4 view = modelViewMatrix * vec4(position, 1.0);
@@ -43,7 +44,8 @@ const VERTEX = `
   }`;
 
 // Flat shading from the derivatives of the position; edges where a weight is near 0, faded where they would
-// be denser than the pixels. What is translucent has few of them.
+// be denser than the pixels. What is translucent has few of them. A class, and where there is no value, are those
+// of the nearest corner; a value is interpolated between the corners that have one.
 const FRAGMENT = `
   precision highp float;
   uniform sampler2D ramp;
@@ -52,14 +54,18 @@ const FRAGMENT = `
   uniform vec3 neutral, ink;
   uniform vec4 plane;
   uniform bool isCut, isFlat;
-  in float vCode;
-  in vec3 vWeight, vView, vPlace;
+  flat in vec3 vCodes;
+  in vec3 vShares, vWeight, vView, vPlace;
   out vec4 colour;
   void main() {
     if (isCut && dot(plane.xyz, vPlace) > plane.w) discard; // the side that is taken away
-    float share = (vCode - range.x) / max(range.y - range.x, 1e-6);
-    if (classes > 0.0) share = (floor(vCode + 0.5) + 0.5) / classes;
-    vec3 base = vCode > noCode - 0.5 ? neutral : texture(ramp, vec2(clamp(share, 0.002, 0.998), 0.5)).rgb;
+    float most = max(max(vShares.x, vShares.y), vShares.z);
+    float nearest = vShares.x >= most ? vCodes.x : vShares.y >= most ? vCodes.y : vCodes.z;
+    vec3 known = vShares * vec3(lessThan(vCodes, vec3(noCode - 0.5)));
+    float code = dot(known, vCodes) / max(known.x + known.y + known.z, 1e-6);
+    float share = (code - range.x) / max(range.y - range.x, 1e-6);
+    if (classes > 0.0) share = (nearest + 0.5) / classes;
+    vec3 base = nearest > noCode - 0.5 ? neutral : texture(ramp, vec2(clamp(share, 0.002, 0.998), 0.5)).rgb;
     vec3 normal = normalize(cross(dFdx(vView), dFdy(vView)));
     float key = max(dot(normal, normalize(vec3(0.35, 0.75, 0.65))), 0.0);
     float head = abs(normal.z);
@@ -96,6 +102,11 @@ const GRID_FRAGMENT = `
     float fade = 1.0 - smoothstep(0.15, 1.0, length(vPlace) / radius);
     colour = vec4(ink, (0.04 + 0.22 * strength) * fade);
   }`;
+
+// All three corners of a triangle, which begins at vertex `begin`, are given the code of its corner k.
+function setCorner(codes, begin, k, code) {
+  for (let corner = 0; corner < 3; corner++) codes[3 * (begin + corner) + k] = code;
+}
 
 export const PALETTE = {
   light: { ink: "#1c2126", grid: "#4a5560", edges: 0.3, obstacle: "#7f8b95" },
@@ -171,7 +182,7 @@ export class View {
     const add = (name, array, size, isNormalized) =>
       geometry.setAttribute(name, new BufferAttribute(array, size, isNormalized).setUsage(DynamicDrawUsage));
     add("position", new Float32Array(9 * triangleCount), 3, false);
-    add("code", new Float32Array(3 * triangleCount), 1, false);
+    add("codes", new Float32Array(9 * triangleCount), 3, false);
     add("weight", new Uint8Array(9 * triangleCount), 3, true);
     geometry.boundingSphere = new Sphere(new Vector3(), Infinity);
   }
@@ -182,7 +193,7 @@ export class View {
     const { uniforms } = solids.material;
     uniforms.neutral = { value: new Color() };
     uniforms.edges = { value: 0 };
-    solids.geometry.getAttribute("code").array.fill(NO_CODE);
+    solids.geometry.getAttribute("codes").array.fill(NO_CODE);
     solids.geometry.getAttribute("weight").array.set(this.obstacles.weights());
     solids.renderOrder = 4;
     return solids;
@@ -310,21 +321,26 @@ export class View {
     return Math.round(decode(field.low, field.high, code)) - this.classLow;
   }
 
+  // On the edge of two vertices: of the nearer one where it is a class, or one of them has no value.
+  codeBetween(a, b, share) {
+    const [first, second] = [this.codeAt(a), this.codeAt(b)];
+    if (this.classes || first === NO_CODE || second === NO_CODE) return share < 0.5 ? first : second;
+    return first * (1 - share) + second * share;
+  }
+
   update() {
     if (this.frame < 0) return;
     const { triangles } = this.frames;
     const place = this.surface.geometry.getAttribute("position");
-    const code = this.surface.geometry.getAttribute("code");
+    const codes = this.surface.geometry.getAttribute("codes");
     const isCell = this.field?.on === "tetrahedra";
-    for (let t = 0, corner = 0; t < triangles.length; t += 4) {
-      const owner = isCell || !this.field ? this.codeAt(triangles[t + 3]) : 0;
-      for (let k = 0; k < 3; k++, corner++) {
+    for (let t = 0, corner = 0; t < triangles.length; t += 4, corner += 3)
+      for (let k = 0; k < 3; k++) {
         const v = triangles[t + k];
-        place.array.set(this.places.subarray(3 * v, 3 * v + 3), 3 * corner);
-        code.array[corner] = isCell || !this.field ? owner : this.codeAt(v);
+        place.array.set(this.places.subarray(3 * v, 3 * v + 3), 3 * (corner + k));
+        setCorner(codes.array, corner, k, this.codeAt(isCell ? triangles[t + 3] : v));
       }
-    }
-    place.needsUpdate = code.needsUpdate = true;
+    place.needsUpdate = codes.needsUpdate = true;
     this.updateSection();
   }
 
@@ -353,19 +369,20 @@ export class View {
       this.reserve(geometry, room.owners.length);
     }
     const place = geometry.getAttribute("position");
-    const code = geometry.getAttribute("code");
+    const codes = geometry.getAttribute("codes");
     const isCell = this.field?.on === "tetrahedra";
     for (let corner = 0; corner < 3 * room.triangleCount; corner++) {
       const [a, b, share] = [room.ends[2 * corner], room.ends[2 * corner + 1], room.shares[corner]];
       for (let c = 0; c < 3; c++)
         place.array[3 * corner + c] = places[3 * a + c] + share * (places[3 * b + c] - places[3 * a + c]);
       const owner = room.owners[(corner / 3) | 0];
-      code.array[corner] = isCell || !this.field ? this.codeAt(owner) : this.codeAt(a) * (1 - share) + this.codeAt(b) * share;
+      const k = corner % 3;
+      setCorner(codes.array, corner - k, k, isCell ? this.codeAt(owner) : this.codeBetween(a, b, share));
     }
     this.layBodies(place.array);
     const weight = geometry.getAttribute("weight");
     weight.array.set(room.weights.subarray(0, 9 * room.triangleCount));
-    place.needsUpdate = code.needsUpdate = weight.needsUpdate = true;
+    place.needsUpdate = codes.needsUpdate = weight.needsUpdate = true;
     geometry.setDrawRange(0, 3 * room.triangleCount);
   }
 
