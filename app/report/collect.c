@@ -47,7 +47,8 @@ static Status add_comparison(AppReport *report, const char *directory, int max_f
 Status app_report_collect(AppReport *report, const char *directory, bool is_alone, int max_frames) {
   struct stat info;
   if (stat(directory, &info) != 0)
-    return status_fail(STATUS_IO, "%s: cannot be opened: %s", directory, strerror(errno));
+    return status_fail(STATUS_IO, "%s: cannot be opened: %s; give the DIR of `tetlap run SCENE -o DIR`",
+                       directory, strerror(errno));
   if (!S_ISDIR(info.st_mode))
     return status_fail(STATUS_INPUT, "%s: is not a directory; give the DIR of `tetlap run SCENE -o DIR`",
                        directory);

@@ -273,7 +273,7 @@ START_TEST(a_command_that_fails_says_why) {
        65, "01_drop.yaml with --set: contact.pairs: no body or obstacle has the name 'none'"},
       {"datagen -n 10 -o /nowhere/x.h5", 74, "/nowhere/x.h5"},
       {"report /nowhere", 74, "/nowhere"},
-      {"view /nowhere", 74, "/nowhere"},
+      {"view /nowhere", 74, "mkdir -p /nowhere"},
       {"weights nowhere", 64, "'nowhere'"},
       {"overlap " TETLAP_SOURCE_DIR "/README.md", 65, "README.md:"},
       {"stress --only nowhere", 64, "'nowhere'"},

@@ -35,8 +35,11 @@ static const AppOption option_table[] = {
 static Status check_directory(const char *directory) {
   struct stat info;
   if (stat(directory, &info) != 0)
-    return status_fail(STATUS_IO, "%s: cannot be opened: %s; give the DIR of `tetlap run SCENE -o DIR`",
-                       directory, strerror(errno));
+    return status_fail(
+        STATUS_IO,
+        "%s: cannot be opened: %s; give the DIR of `tetlap run SCENE -o DIR`; of a run that is "
+        "still to begin, make it: mkdir -p %s",
+        directory, strerror(errno), directory);
   if (!S_ISDIR(info.st_mode))
     return status_fail(STATUS_INPUT, "%s: is not a directory; give the DIR of `tetlap run SCENE -o DIR`",
                        directory);
