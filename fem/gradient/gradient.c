@@ -12,6 +12,8 @@
 enum { MAX_CORRECTIONS = 8, MAX_REFINEMENTS = 4 };
 // Newton's method ends once a step does not halve the force; λ once its residual is this.
 static const double LEAST_FALL = 0.5, RESIDUAL = 1e-12;
+// What derivatives agree to with differences.
+static const double PROMISE = 1e-6;
 // How far coordinates move for a difference of forces, as a share of the mean edge.
 static const double WAY = 1e-7;
 
@@ -87,6 +89,15 @@ static Status settle(Adjoint *adjoint, double time, double *left) {
   return STATUS_OK;
 }
 
+Status fem_gradient_judge(double residual, double time) {
+  if (residual <= PROMISE) return STATUS_OK;
+  return status_fail(
+      STATUS_SOLVER,
+      "the adjoint at t = %.9g s is solved to %.1e only, %.0e is needed: no gradient; take shorter "
+      "steps (time.max_step), or in a static scene more frames (output.frames)",
+      time, residual, PROMISE);
+}
+
 // λ by K's factor, with iterative refinement.
 static Status solve(Adjoint *adjoint, double *residual) {
   FemEquilibrium *equilibrium = &adjoint->equilibrium;
@@ -104,7 +115,7 @@ static Status solve(Adjoint *adjoint, double *residual) {
     *residual = sqrt(fem_vector_dot(n, adjoint->force, adjoint->force)) / whole;
     if (*residual <= RESIDUAL) break;
   }
-  return isfinite(*residual) ? STATUS_OK : status_fail(STATUS_SOLVER, "the adjoint is not a number");
+  return fem_gradient_judge(*residual, adjoint->state.time);
 }
 
 // How far K λ is from the difference of forces along λ.

@@ -42,4 +42,8 @@ Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGrad
 Status fem_gradient_create(FemGradient *gradient, const FemGradientDef *def);
 void fem_gradient_destroy(FemGradient *gradient); // also of a zeroed one
 
+// Whether an adjoint of which that share is left unsolved serves for derivatives to 1e-6. STATUS_SOLVER, with
+// the time: it does not, or is no number.
+Status fem_gradient_judge(double residual, double time);
+
 #endif

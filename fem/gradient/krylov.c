@@ -87,13 +87,13 @@ Status fem_krylov_solve(FemKrylov *krylov, const double *b, double tolerance, do
   int count = 0;
   *residual = 0;
   memset(x, 0, (size_t)krylov->count * sizeof *x);
-  if (!(whole > 0)) return STATUS_OK;
+  if (whole == 0) return STATUS_OK;
   triangle.right[0] = whole;
   for (int j = 0; j < krylov->count; j++) krylov->basis[j] = b[j] / whole;
-  do {
+  for (*residual = 1; count<FEM_KRYLOV_MOST && * residual> tolerance;) {
     TRY(extend(krylov, &triangle, count));
     *residual = fabs(triangle.right[++count]) / whole;
-  } while (count<FEM_KRYLOV_MOST && * residual> tolerance);
+  }
   TRY(combine(krylov, &triangle, count, x));
   if (isfinite(*residual)) return STATUS_OK;
   return status_fail(STATUS_SOLVER, "GMRES met what is not a number");

@@ -19,9 +19,8 @@ enum { FEM_KRYLOV_MOST = 80 };
 Status fem_krylov_create(FemKrylov *krylov, int count); // STATUS_MEMORY
 void fem_krylov_destroy(FemKrylov *krylov);             // also of a zeroed one
 
-// x with |b − A x| ≤ tolerance |b|, or the best of FEM_KRYLOV_MOST directions; what is left, as that share,
-// in
-// `*residual`.
+// x with |b − A x| ≤ tolerance |b|, or the best of FEM_KRYLOV_MOST directions. `*residual`: what is left, as
+// that share. STATUS_SOLVER: it is not a number.
 Status fem_krylov_solve(FemKrylov *krylov, const double *b, double tolerance, double *x, double *residual);
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "app/gradient/goal.h"
 #include "app/gradient/parameter.h"
+#include "fem/gradient/krylov.h"
 #include "folder.h"
 #include "static_solve.h"
 
@@ -366,6 +367,34 @@ START_TEST(the_command_prints_scaling_laws) {
 }
 END_TEST
 
+START_TEST(what_is_left_unsolved_is_no_gradient) {
+  ck_assert_ok(fem_gradient_judge(1e-7, 0.25));
+  ck_assert_int_eq(fem_gradient_judge(1e-5, 0.25), STATUS_SOLVER);
+  ck_assert_ptr_nonnull(strstr(status_message(), "t = 0.25 s"));
+  ck_assert_int_eq(fem_gradient_judge(NAN, 0.25), STATUS_SOLVER);
+  ck_assert_ptr_nonnull(strstr(status_message(), "t = 0.25 s"));
+}
+END_TEST
+
+static Status twice(void *self, const double *x, double *y) {
+  for (int i = 0; i < *(int *)self; i++) y[i] = 2 * x[i];
+  return STATUS_OK;
+}
+
+START_TEST(a_right_side_that_is_no_number_is_refused) {
+  int count = 3;
+  const double b[3] = {1, NAN, 2}, good[3] = {1, 4, 2};
+  double x[3], residual;
+  FemKrylov krylov = {.self = &count, .multiply = twice, .precondition = twice};
+  ck_assert_ok(fem_krylov_create(&krylov, count));
+  ck_assert_ok(fem_krylov_solve(&krylov, good, 1e-12, x, &residual));
+  for (int i = 0; i < count; i++) ck_assert_near(x[i], good[i] / 2, 1e-12);
+  ck_assert_int_eq(fem_krylov_solve(&krylov, b, 1e-12, x, &residual), STATUS_SOLVER);
+  ck_assert_ptr_nonnull(strstr(status_message(), "not a number"));
+  fem_krylov_destroy(&krylov);
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("gradient");
   tcase_add_checked_fixture(test_case, folder_make, folder_remove);
@@ -379,6 +408,8 @@ int main(void) {
   tcase_add_test(test_case, what_has_no_gradient_is_refused_by_name);
   tcase_add_test(test_case, parameters_without_a_derivative_are_refused_by_name);
   tcase_add_test(test_case, quantities_that_are_not_there_are_refused_by_name);
+  tcase_add_test(test_case, what_is_left_unsolved_is_no_gradient);
+  tcase_add_test(test_case, a_right_side_that_is_no_number_is_refused);
   tcase_add_test(test_case, the_command_prints_scaling_laws);
   return suite_run("gradient", test_case, 300);
 }
