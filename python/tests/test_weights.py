@@ -60,6 +60,9 @@ class Files(unittest.TestCase):
             path.write_bytes(b"\x02" + 7 * b"\0" + b"{}")
             with self.assertRaisesRegex(tetlap.Error, "its metadata have no format"):
                 tetlap.read_weights(path)
+            path.write_bytes(data.replace(b'"shape"', b'"shake"', 1))
+            with self.assertRaisesRegex(tetlap.Error, "its metadata have no format or no shape"):
+                tetlap.read_weights(path)
             path.write_bytes(data[:100])
             with self.assertRaisesRegex(tetlap.Error, "no safetensors file"):
                 tetlap.read_weights(path)

@@ -55,9 +55,9 @@ def _read_header(path, data):
         header = json.loads(data[8 : 8 + size])
         card = header.pop("__metadata__")
         name, _, version = card["format"].rpartition(" ")
-        version = int(version)
+        version, card["shape"] = int(version), json.loads(card["shape"])
     except (ValueError, KeyError, AttributeError, TypeError):
-        raise Error(f"{path}: is no weights file of tetlap: its metadata have no format; tetlap.write_weights writes one") from None
+        raise Error(f"{path}: is no weights file of tetlap: its metadata have no format or no shape; tetlap.write_weights writes one") from None
     if name != _FORMAT:
         raise Error(f"{path}: is of format {card['format']!r}, expected '{_FORMAT} {_VERSION}'")
     if version > _VERSION:
@@ -83,7 +83,7 @@ def read_weights(path: str | os.PathLike) -> Weights:
             tensors[name] = np.frombuffer(data[start + begin : start + end], _TYPES[entry["dtype"]]).reshape(entry["shape"]).copy()
         except (KeyError, TypeError, ValueError):
             raise Error(f"{path}: tensor {name} is damaged") from None
-    return Weights(tensors, json.loads(card["shape"]), **{key: card.get(key, "") for key in _TEXTS})
+    return Weights(tensors, card["shape"], **{key: card.get(key, "") for key in _TEXTS})
 
 
 def _as_array(name, value):
