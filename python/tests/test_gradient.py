@@ -42,8 +42,8 @@ class Gradient(unittest.TestCase):
         self.assertEqual(found["parameter"][0], 2000)
 
     def test_what_has_no_gradient_says_why(self):
-        with self.assertRaisesRegex(tetlap.RunError, "friction"):
-            tetlap.gradient(SCENE, "energy", DENSITY, set={"contact.friction": 0.3})
+        with self.assertRaisesRegex(tetlap.RunError, "contact.law: with friction"):
+            tetlap.gradient(SCENE, "energy", DENSITY, set={"contact.friction": 0.3, "contact.law": "power", "contact.law_exponent": 2})
         with self.assertRaisesRegex(tetlap.RunError, "there are block"):
             tetlap.gradient(SCENE, "displacement:brick:z", DENSITY)
         with self.assertRaisesRegex(TypeError, r"of is \[3\]"):
