@@ -42,8 +42,9 @@ class Gradient(unittest.TestCase):
         self.assertEqual(found["parameter"][0], 2000)
 
     def test_what_has_no_gradient_says_why(self):
-        with self.assertRaisesRegex(tetlap.RunError, "contact.law: with friction"):
-            tetlap.gradient(SCENE, "energy", DENSITY, set={"contact.friction": 0.3, "contact.law": "power", "contact.law_exponent": 2})
+        ball = {"name": "ball", "sphere": {"centre": [0, 0, -1], "radius": 1}}
+        with self.assertRaisesRegex(tetlap.RunError, "friction on a sphere"):
+            tetlap.gradient({**SCENE, "obstacles": [ball], "contact": {"stiffness": 1e7, "friction": 0.3}}, "energy", DENSITY)
         with self.assertRaisesRegex(tetlap.RunError, "there are block"):
             tetlap.gradient(SCENE, "displacement:brick:z", DENSITY)
         with self.assertRaisesRegex(TypeError, r"of is \[3\]"):
