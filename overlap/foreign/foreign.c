@@ -13,12 +13,25 @@
 #include "overlap/separation.h"
 #include "overlap/source.h"
 
+// The arrays of a request, in the order of their widths.
+enum { PAIRS, VOLUME, GRADIENT, CENTROID, LOGIT, DOUBT, ARRAYS };
+static const struct {
+  const char *name;
+  size_t width; // numbers a pair
+} shapes[ARRAYS] = {{"pairs", 24},   {"volume", 1}, {"gradient", 24},
+                    {"centroid", 3}, {"logit", 1},  {"doubt", 1}};
+
+// Behind each array stand numbers that no model may touch: a row of the widest.
+enum { FENCE = 24 };
+static const unsigned char FENCE_BYTE = 0xA5;
+
 // What is asked of the model, row by row where not all pairs are.
 typedef struct Asked {
   int *rows; // of the batch                                  (count)
-  double *pairs, *volume, *gradient, *centroid;
-  size_t row_capacity, pair_capacity, volume_capacity, gradient_capacity, centroid_capacity;
+  size_t row_capacity;
   int count;
+  double *arrays[ARRAYS]; // each with its fence           (count, width)
+  size_t capacities[ARRAYS];
 } Asked;
 
 typedef struct Foreign {
@@ -34,8 +47,8 @@ static void destroy(void *self) {
   Foreign *foreign = self;
   if (foreign->port.close) foreign->port.close(foreign->port.self);
   Asked *asked = &foreign->asked;
-  memory_free(asked->rows), memory_free(asked->pairs), memory_free(asked->volume);
-  memory_free(asked->gradient), memory_free(asked->centroid);
+  memory_free(asked->rows);
+  for (int a = 0; a < ARRAYS; a++) memory_free(asked->arrays[a]);
   pthread_mutex_destroy(&foreign->lock);
   memory_free(foreign);
 }
@@ -63,17 +76,12 @@ static unsigned answer_unasked(const Foreign *foreign, const double pair[24]) {
   return overlap_separation_pair(pair, 0) >= 0 ? OVERLAP_DISJOINT : 0;
 }
 
-static Status reserve(Asked *asked, const OverlapBatch *batch) {
-  const size_t count = (size_t)batch->pair_count, wide = count * OVERLAP_PAIR_SIZE;
-  bool fits = memory_reserve((void **)&asked->rows, &asked->row_capacity, count, sizeof *asked->rows) &&
-              memory_reserve((void **)&asked->pairs, &asked->pair_capacity, wide, sizeof *asked->pairs) &&
-              memory_reserve((void **)&asked->volume, &asked->volume_capacity, count, sizeof *asked->volume);
-  if (fits && batch->gradient)
-    fits =
-        memory_reserve((void **)&asked->gradient, &asked->gradient_capacity, wide, sizeof *asked->gradient);
-  if (fits && batch->centroid)
-    fits = memory_reserve((void **)&asked->centroid, &asked->centroid_capacity, 3 * count,
-                          sizeof *asked->centroid);
+static Status reserve(Asked *asked, size_t count, const bool is_wanted[ARRAYS]) {
+  bool fits = memory_reserve((void **)&asked->rows, &asked->row_capacity, count, sizeof *asked->rows);
+  for (int a = 0; a < ARRAYS && fits; a++)
+    if (is_wanted[a])
+      fits = memory_reserve((void **)&asked->arrays[a], &asked->capacities[a],
+                            count * shapes[a].width + FENCE, sizeof(double));
   return fits ? STATUS_OK : status_no_memory("pairs for a model");
 }
 
@@ -86,7 +94,8 @@ static void choose(const Foreign *foreign, Asked *asked, const OverlapBatch *bat
     overlap_ops_write_nothing(&answer);
     *answer.flags = answer_unasked(foreign, pair);
     if (*answer.flags) continue;
-    memcpy(asked->pairs + (size_t)asked->count * OVERLAP_PAIR_SIZE, pair, OVERLAP_PAIR_SIZE * sizeof *pair);
+    memcpy(asked->arrays[PAIRS] + (size_t)asked->count * OVERLAP_PAIR_SIZE, pair,
+           OVERLAP_PAIR_SIZE * sizeof *pair);
     asked->rows[asked->count++] = i;
   }
 }
@@ -97,15 +106,41 @@ static bool are_finite(int count, const double *numbers) {
   return sum == 0;
 }
 
-// All that is wanted is NaN before the model is asked: what it leaves unwritten is no answer.
-static Status ask(const Foreign *foreign, const TetlapModelBatch *batch) {
-  const size_t bytes = batch->count * sizeof(double);
-  memset(batch->volume, 0xFF, bytes);
-  if (batch->gradient) memset(batch->gradient, 0xFF, 24 * bytes);
-  if (batch->centroid) memset(batch->centroid, 0xFF, 3 * bytes);
-  if (batch->logit) memset(batch->logit, 0xFF, bytes);
-  if (batch->doubt) memset(batch->doubt, 0xFF, bytes);
-  return foreign->port.ask(foreign->port.self, batch);
+static bool is_whole(const unsigned char *fence) {
+  bool is = true;
+  for (size_t i = 0; i < FENCE * sizeof(double); i++) is = is && fence[i] == FENCE_BYTE;
+  return is;
+}
+
+// All that is wanted is NaN before the model is asked: what it leaves unwritten is no answer. A fence that is
+// not whole afterwards ends the run: what else was overwritten nobody knows.
+static Status ask(Foreign *foreign, const bool is_wanted[ARRAYS]) {
+  Asked *asked = &foreign->asked;
+  double *arrays[ARRAYS] = {NULL};
+  const size_t count = (size_t)asked->count;
+  for (int a = 0; a < ARRAYS; a++) {
+    if (!is_wanted[a]) continue;
+    arrays[a] = asked->arrays[a];
+    if (a != PAIRS) memset(arrays[a], 0xFF, count * shapes[a].width * sizeof(double));
+    memset(arrays[a] + count * shapes[a].width, FENCE_BYTE, FENCE * sizeof(double));
+  }
+  TetlapModelBatch request = {.size = sizeof request,
+                              .count = count,
+                              .pairs = arrays[PAIRS],
+                              .volume = arrays[VOLUME],
+                              .gradient = arrays[GRADIENT],
+                              .centroid = arrays[CENTROID],
+                              .logit = arrays[LOGIT],
+                              .doubt = arrays[DOUBT]};
+  TRY(foreign->port.ask(foreign->port.self, &request));
+  for (int a = 0; a < ARRAYS; a++)
+    if (arrays[a] && !is_whole((const unsigned char *)(arrays[a] + count * shapes[a].width)))
+      return status_fail(
+          STATUS_SOLVER,
+          "overlap model '%s' wrote beyond the end of `%s`, which has %zu rows of %zu: it must "
+          "write `count` rows of each array and no more",
+          foreign->name, shapes[a].name, count, shapes[a].width);
+  return STATUS_OK;
 }
 
 static Status fail_not_finite(const Foreign *foreign, int pair, const char *what) {
@@ -119,35 +154,35 @@ static Status give(const Foreign *foreign, const Asked *asked, const OverlapBatc
   const size_t at = (size_t)k;
   unsigned flags = 0;
   OverlapAnswer answer = overlap_ops_answer(batch, i, &flags);
-  const double volume = asked->volume[at], *pair = asked->pairs + OVERLAP_PAIR_SIZE * at;
+  const double *pair = batch->pairs + (size_t)i * OVERLAP_PAIR_SIZE, *const *arrays =
+                                                                         (const double *const *)asked->arrays;
+  const double volume = arrays[VOLUME][at];
   if (!isfinite(volume)) return fail_not_finite(foreign, i, "its volume");
   const double most = fmin(volume_of(pair), volume_of(pair + 12));
   if (volume < 0 || volume > most * (1 + 1e-9)) *answer.flags |= OVERLAP_UNSOUND;
   if (!(volume > 0)) return STATUS_OK;
   *answer.volume = volume;
   if (answer.gradient) {
-    if (!are_finite(24, asked->gradient + 24 * at)) return fail_not_finite(foreign, i, "a gradient of it");
-    memcpy(answer.gradient, asked->gradient + 24 * at, 24 * sizeof(double));
+    if (!are_finite(24, arrays[GRADIENT] + 24 * at)) return fail_not_finite(foreign, i, "a gradient of it");
+    memcpy(answer.gradient, arrays[GRADIENT] + 24 * at, 24 * sizeof(double));
   }
   if (answer.centroid) {
-    if (!are_finite(3, asked->centroid + 3 * at)) return fail_not_finite(foreign, i, "its centroid");
-    memcpy(answer.centroid, asked->centroid + 3 * at, 3 * sizeof(double));
+    if (!are_finite(3, arrays[CENTROID] + 3 * at)) return fail_not_finite(foreign, i, "its centroid");
+    memcpy(answer.centroid, arrays[CENTROID] + 3 * at, 3 * sizeof(double));
   }
   return STATUS_OK;
 }
 
 static Status eval(Foreign *foreign, const OverlapBatch *batch) {
   Asked *asked = &foreign->asked;
-  TRY(reserve(asked, batch));
+  const bool is_wanted[ARRAYS] = {[PAIRS] = true,
+                                  [VOLUME] = true,
+                                  [GRADIENT] = batch->gradient != NULL,
+                                  [CENTROID] = batch->centroid != NULL};
+  TRY(reserve(asked, (size_t)batch->pair_count, is_wanted));
   choose(foreign, asked, batch);
   if (asked->count == 0) return STATUS_OK;
-  TetlapModelBatch request = {.size = sizeof request,
-                              .count = (size_t)asked->count,
-                              .pairs = asked->pairs,
-                              .volume = asked->volume,
-                              .gradient = batch->gradient ? asked->gradient : NULL,
-                              .centroid = batch->centroid ? asked->centroid : NULL};
-  Status status = ask(foreign, &request);
+  Status status = ask(foreign, is_wanted);
   for (int k = 0; k < asked->count && !status; k++) status = give(foreign, asked, batch, k);
   return status;
 }
@@ -165,32 +200,40 @@ static Status eval_pair(const void *self, const double pair[24], const OverlapAn
   return eval_batch(self, &one);
 }
 
-// All pairs as they stand; `needed` is the array that must be finite.
-static Status eval_all(Foreign *foreign, const TetlapModelBatch *request, const double *needed,
-                       const char *what) {
-  if (request->count == 0) return STATUS_OK;
+// V, where it is wanted, and array `what` of all pairs as they stand.
+static Status eval_all(Foreign *foreign, int count, const double *pairs, double *volumes, int what,
+                       double *numbers) {
+  Asked *asked = &foreign->asked;
+  const size_t bytes = (size_t)count * sizeof(double);
+  const bool is_wanted[ARRAYS] = {
+      [PAIRS] = true, [VOLUME] = true, [LOGIT] = what == LOGIT, [DOUBT] = what == DOUBT};
+  TRY(reserve(asked, (size_t)count, is_wanted));
+  memcpy(asked->arrays[PAIRS], pairs, OVERLAP_PAIR_SIZE * bytes);
+  asked->count = count;
+  TRY(ask(foreign, is_wanted));
+  memcpy(numbers, asked->arrays[what], bytes);
+  if (volumes) memcpy(volumes, asked->arrays[VOLUME], bytes);
+  for (int i = 0; i < count; i++)
+    if (!isfinite(numbers[i])) return fail_not_finite(foreign, i, what == LOGIT ? "its logit" : "its doubt");
+  return STATUS_OK;
+}
+
+static Status eval_all_locked(const void *self, int count, const double *pairs, double *volumes, int what,
+                              double *numbers) {
+  Foreign *foreign = (Foreign *)self;
+  if (count == 0) return STATUS_OK;
   pthread_mutex_lock(&foreign->lock);
-  Status status = ask(foreign, request);
+  Status status = eval_all(foreign, count, pairs, volumes, what, numbers);
   pthread_mutex_unlock(&foreign->lock);
-  for (size_t i = 0; i < request->count && !status; i++)
-    if (!isfinite(needed[i])) status = fail_not_finite(foreign, (int)i, what);
   return status;
 }
 
 static Status eval_logits(const void *self, int count, const double *pairs, double *logits) {
-  double *volumes = memory_zeroed((size_t)count + 1, sizeof *volumes);
-  if (!volumes) return status_no_memory("volumes of pairs");
-  TetlapModelBatch request = {
-      .size = sizeof request, .count = (size_t)count, .pairs = pairs, .volume = volumes, .logit = logits};
-  Status status = eval_all((Foreign *)self, &request, logits, "its logit");
-  memory_free(volumes);
-  return status;
+  return eval_all_locked(self, count, pairs, NULL, LOGIT, logits);
 }
 
 static Status eval_bounds(const void *self, int count, const double *pairs, double *volumes, double *bounds) {
-  TetlapModelBatch request = {
-      .size = sizeof request, .count = (size_t)count, .pairs = pairs, .volume = volumes, .doubt = bounds};
-  return eval_all((Foreign *)self, &request, bounds, "its doubt");
+  return eval_all_locked(self, count, pairs, volumes, DOUBT, bounds);
 }
 
 static const OverlapOps standard = {

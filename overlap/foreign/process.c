@@ -46,11 +46,26 @@ static double now(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-// Waits until it has ended; false: it has not by then.
+// Whether a process of ours has ended. It is still to be reaped: its group keeps its number until then.
+static bool has_ended(const Process *process) {
+  siginfo_t info = {0};
+  if (process->pid == 0) return false;
+  return waitid(P_PID, (id_t)process->pid, &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != 0;
+}
+
+// Ends what the process has started in its group, then itself.
+static void end_group(Process *process, int *how) {
+  kill(-process->pid, SIGKILL);
+  kill(process->pid, SIGKILL);
+  waitpid(process->pid, how, 0);
+  process->pid = 0;
+}
+
+// Waits until it has ended; false: it has not by then. What it has started ends, too.
 static bool reap(Process *process, double seconds, int *how) {
   for (double end = now() + seconds; process->pid > 0;) {
-    if (waitpid(process->pid, how, WNOHANG) != 0) {
-      process->pid = 0;
+    if (has_ended(process)) {
+      end_group(process, how);
       return true;
     }
     if (now() > end) return false;
@@ -61,11 +76,7 @@ static bool reap(Process *process, double seconds, int *how) {
 
 static void stop(Process *process) {
   int how;
-  if (process->pid == 0 || reap(process, 0, &how)) return;
-  kill(-process->pid, SIGKILL); // it leads a group of its own
-  kill(process->pid, SIGKILL);
-  waitpid(process->pid, &how, 0);
-  process->pid = 0;
+  if (process->pid > 0) end_group(process, &how);
 }
 
 static void disconnect(Process *process) {
@@ -141,6 +152,8 @@ static bool wait_for_answer(const Process *process, double *end, bool *is_signal
     if (!(left > 0)) return false;
     ready = poll(&it, 1, (int)(1e3 * left) + 1);
     if (ready < 0 && errno != EINTR) return true; // recv says what it is
+    // One that it has started may hold the socket open.
+    if (ready == 0 && has_ended(process)) shutdown(process->socket, SHUT_RDWR);
   }
   return true;
 }

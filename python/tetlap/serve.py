@@ -137,6 +137,7 @@ class Channel:
     def __init__(self, socket_descriptor, memory_descriptor):
         self._socket = socket.socket(fileno=socket_descriptor)
         self._descriptor, self._memory, self._capacity = memory_descriptor, None, 0
+        self._process = os.getpid()
 
     def receive(self):
         """The next four words; None: the program has closed its end."""
@@ -149,6 +150,9 @@ class Channel:
         return _WORDS.unpack(words)
 
     def reply(self, failed, text, gives=0):
+        if os.getpid() != self._process:  # the parent answers
+            sys.stderr.write("the model forked, and the new process came back from it; it must end by os._exit()\n")
+            os._exit(1)
         raw = text.encode()
         with contextlib.suppress(ConnectionError):  # the program no longer waits: receive() says so
             self._socket.sendall(_WORDS.pack(failed, len(raw), gives, 0) + raw)
@@ -181,6 +185,8 @@ def _tell(error):
                                                                          "<frozen importlib._bootstrap_external>"):
         frames = frames.tb_next
     first = "".join(traceback.format_exception_only(type(error), error)).strip().splitlines()[-1]
+    if isinstance(error, ModuleNotFoundError):
+        first += f" in {sys.executable}; install it there, or set TETLAP_PYTHON to a Python that has it"
     return first + "\n" + "".join(traceback.format_exception(type(error), error, frames)).rstrip()
 
 

@@ -7,8 +7,11 @@
 #include "suite.h"
 
 #include <dirent.h>
+#include <dlfcn.h>
+#include <signal.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <tetlap/model.h>
 #include <unistd.h>
 
@@ -138,6 +141,79 @@ START_TEST(libraries_that_are_wrong) {
       expect_refused(cases[i].path, STATUS_INPUT, cases[i].says);
   expect_refused("none.so", STATUS_IO, "none.so: cannot be opened");
   expect_refused(TETLAP_SOURCE_DIR "/tests/overlap/foreign/library.so", STATUS_IO, "cannot be opened");
+}
+END_TEST
+
+START_TEST(what_is_written_beyond_an_array_ends_the_run) {
+  OverlapModel model;
+  open_model(&model, TETLAP_MODEL_11);
+  for (int count = 1; count <= PAIRS; count += 7) {
+    OverlapBatch batch = batch_of(count, count % 2, false);
+    ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_SOLVER);
+    ck_assert_msg(strstr(status_message(), "wrote beyond the end of `volume`, which has"), "%s",
+                  status_message());
+  }
+  overlap_model_destroy(&model);
+}
+END_TEST
+
+// `count` numbers that end where no memory is.
+static double *against_a_guard(size_t count) {
+  size_t page = (size_t)sysconf(_SC_PAGESIZE), bytes = count * sizeof(double);
+  size_t size = (bytes + page - 1) / page * page;
+  char *room = mmap(NULL, size + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  ck_assert(room != MAP_FAILED && mprotect(room + size, page, PROT_NONE) == 0);
+  return (double *)(room + size - bytes);
+}
+
+// Whether the process survives that the library answers `count` pairs.
+static bool stays_within(const char *path, size_t count) {
+  int how;
+  pid_t child = fork();
+  if (child > 0) {
+    ck_assert_int_eq(waitpid(child, &how, 0), child);
+    return WIFEXITED(how) && WEXITSTATUS(how) == 0;
+  }
+  const TetlapModel *(*find)(void);
+  char message[100];
+  signal(SIGSEGV, SIG_DFL); // no sanitizer's report
+  *(void **)&find = dlsym(dlopen(path, RTLD_NOW), "tetlap_model");
+  double *own = against_a_guard(24 * count);
+  memcpy(own, pairs[0], 24 * count * sizeof *own);
+  const uint32_t gives = find()->gives;
+  TetlapModelBatch batch = {.size = sizeof batch,
+                            .count = count,
+                            .pairs = own,
+                            .volume = against_a_guard(count),
+                            .gradient = gives & TETLAP_MODEL_GRADIENT ? against_a_guard(24 * count) : NULL,
+                            .centroid = gives & TETLAP_MODEL_CENTROID ? against_a_guard(3 * count) : NULL};
+  _exit(find()->evaluate(NULL, &batch, message, sizeof message));
+}
+
+START_TEST(the_example_writes_what_it_is_asked_for_and_no_more) {
+  for (size_t count = 1; count < 20; count++) ck_assert(stays_within(TETLAP_MODEL_SPLIT, count));
+  ck_assert(stays_within(TETLAP_MODEL_0, 5));
+  ck_assert(!stays_within(TETLAP_MODEL_11, 5)); // else this would show nothing
+}
+END_TEST
+
+START_TEST(what_a_model_does_to_its_pairs_stays_with_it) {
+  OverlapModel model;
+  OverlapBatch batch = batch_of(PAIRS, true, false);
+  double before[PAIRS][24], answers[PAIRS];
+  memcpy(before, pairs, sizeof before);
+  open_model(&model, TETLAP_MODEL_0);
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  memcpy(answers, volume, sizeof answers);
+  unsigned expected[PAIRS];
+  memcpy(expected, flags, sizeof expected);
+  overlap_model_destroy(&model);
+  open_model(&model, TETLAP_MODEL_12);
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  ck_assert_int_eq(memcmp(before, pairs, sizeof before), 0);
+  ck_assert_int_eq(memcmp(answers, volume, sizeof answers), 0);
+  ck_assert_int_eq(memcmp(expected, flags, sizeof expected), 0);
+  overlap_model_destroy(&model);
 }
 END_TEST
 
@@ -362,6 +438,100 @@ START_TEST(commands_that_are_wrong_leave_no_process) {
 }
 END_TEST
 
+// A process that has not ended; a zombie has.
+static bool is_alive(pid_t pid) {
+  char path[64], state = 'X';
+  snprintf(path, sizeof path, "/proc/%d/stat", (int)pid);
+  FILE *stream = fopen(path, "r");
+  if (!stream) return false;
+  if (fscanf(stream, "%*d (%*[^)]) %c", &state) != 1) state = 'X';
+  fclose(stream);
+  return state != 'Z' && state != 'X';
+}
+
+START_TEST(what_a_model_has_started_ends_with_it) {
+  if (!has_numpy()) return;
+  setenv("TETLAP_MODEL_SECONDS", "100", 1);
+  OverlapModel model;
+  OverlapBatch batch = batch_of(1, false, false);
+  memcpy(pairs[0] + 12, pairs[0], 12 * sizeof pairs[0][0]);
+  open_model(&model, PYTHON("starts_another"));
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  const pid_t other = (pid_t)volume[0];
+  ck_assert(is_alive(other));
+  overlap_model_destroy(&model);
+  for (int k = 0; k < 200 && is_alive(other); k++) usleep(10000); // SIGKILL is under way
+  ck_assert(!is_alive(other));
+  expect_failure(PYTHON("dies_and_leaves_another"), STATUS_DEVICE, "ended by signal 9");
+  ck_assert_int_eq(count_children(), 0);
+}
+END_TEST
+
+// Else two would answer one request, and the second answer be taken for the next one's.
+START_TEST(a_model_that_forks_answers_once) {
+  if (!has_numpy()) return;
+  OverlapModel model;
+  double answers[PAIRS];
+  open_model(&model, PYTHON("box"));
+  OverlapBatch batch = batch_of(PAIRS, false, true);
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  memcpy(answers, volume, sizeof answers);
+  overlap_model_destroy(&model);
+  open_model(&model, PYTHON("forks"));
+  for (int k = 0; k < 5; k++) {
+    batch = batch_of(PAIRS - 10 * k, false, true);
+    ck_assert_ok(overlap_model_eval(&model, &batch));
+    ck_assert_int_eq(memcmp(answers, volume, (size_t)batch.pair_count * sizeof *answers), 0);
+  }
+  overlap_model_destroy(&model);
+  open_model(&model, PYTHON("spoils")); // nor does what it writes over its input matter
+  batch = batch_of(PAIRS, false, true);
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  ck_assert_int_eq(memcmp(answers, volume, sizeof answers), 0);
+  overlap_model_destroy(&model);
+}
+END_TEST
+
+START_TEST(what_a_model_prints_is_no_output_of_the_program) {
+  if (!has_numpy()) return;
+  OverlapModel model;
+  char text[1000] = "";
+  OverlapBatch batch = batch_of(PAIRS, false, true);
+  FILE *out = tmpfile(), *err = tmpfile();
+  ck_assert(out && err);
+  fflush(NULL);
+  const int stdout_before = dup(1), stderr_before = dup(2);
+  dup2(fileno(out), 1), dup2(fileno(err), 2);
+  open_model(&model, PYTHON("prints"));
+  Status status = overlap_model_eval(&model, &batch);
+  overlap_model_destroy(&model);
+  dup2(stdout_before, 1), dup2(stderr_before, 2);
+  close(stdout_before), close(stderr_before);
+  ck_assert_int_eq(status, STATUS_OK);
+  ck_assert_int_eq(lseek(fileno(out), 0, SEEK_END), 0);
+  rewind(err);
+  text[fread(text, 1, sizeof text - 1, err)] = 0;
+  ck_assert_msg(strstr(text, "one 1\none "), "%s", text);
+  fclose(out), fclose(err);
+}
+END_TEST
+
+START_TEST(a_python_that_lacks_something_says_what_to_do) {
+  setenv("TETLAP_PYTHON", "/no/such/python", 1);
+  expect_refused(PYTHON("box"), STATUS_INPUT, "there is no Python to run it: set TETLAP_PYTHON");
+  setenv("TETLAP_PYTHON", TETLAP_SOURCE_DIR "/tests/overlap/foreign/bare_python", 1);
+  expect_refused(PYTHON("box"), STATUS_INPUT, "set TETLAP_PYTHON to a Python that has it");
+  ck_assert_msg(strstr(status_message(), "has no NumPy"), "%s", status_message());
+  setenv("TETLAP_PYTHON", TETLAP_PYTHON, 1);
+  if (!has_numpy()) return;
+  expect_refused(TETLAP_SOURCE_DIR "/tests/overlap/foreign/unmet.py", STATUS_INPUT,
+                 "No module named 'a_module_that_nobody_has' in /");
+  ck_assert_msg(strstr(status_message(), "set TETLAP_PYTHON to a Python that has it"), "%s",
+                status_message());
+  ck_assert_int_eq(count_children(), 0);
+}
+END_TEST
+
 // A wish to end that came before the request, or between it and the wait for its answer, which no signal
 // interrupts any more.
 START_TEST(a_wish_to_end_is_seen_while_a_model_computes) {
@@ -385,6 +555,9 @@ int main(void) {
   tcase_add_test(cases, a_word_says_what_it_is);
   tcase_add_test(cases, a_library_answers_as_clip);
   tcase_add_test(cases, libraries_that_are_wrong);
+  tcase_add_test(cases, what_is_written_beyond_an_array_ends_the_run);
+  tcase_add_test(cases, the_example_writes_what_it_is_asked_for_and_no_more);
+  tcase_add_test(cases, what_a_model_does_to_its_pairs_stays_with_it);
   tcase_add_test(cases, volumes_that_none_can_have_are_flagged);
   tcase_add_test(cases, flat_and_disjoint_pairs_are_not_asked_for_unless_ghosts_are_kept);
   tcase_add_test(cases, a_python_function_answers_with_all_that_it_has);
@@ -394,6 +567,10 @@ int main(void) {
   tcase_add_test(cases, a_model_that_writes_nothing_has_not_answered);
   tcase_add_test(cases, a_model_gets_no_file_of_the_program);
   tcase_add_test(cases, commands_that_are_wrong_leave_no_process);
+  tcase_add_test(cases, what_a_model_has_started_ends_with_it);
+  tcase_add_test(cases, a_model_that_forks_answers_once);
+  tcase_add_test(cases, what_a_model_prints_is_no_output_of_the_program);
+  tcase_add_test(cases, a_python_that_lacks_something_says_what_to_do);
   tcase_add_test(cases, a_wish_to_end_is_seen_while_a_model_computes);
   return suite_run("foreign", cases, 60);
 }

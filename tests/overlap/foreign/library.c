@@ -2,6 +2,7 @@
 // Libraries that are wrong in one way each (tests/overlap/test_foreign.c), chosen by WRONG.
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 #include <tetlap/model.h>
 
 enum {
@@ -15,7 +16,9 @@ enum {
   NOT_FINITE,
   NEGATIVE,
   TOO_LARGE,
-  SILENT
+  SILENT,
+  TOO_MANY,
+  SPOILS
 };
 
 static int open_it(void **self, char *message, size_t size) {
@@ -31,6 +34,11 @@ static int evaluate(void *self, const TetlapModelBatch *batch, char *message, si
     batch->volume[i] = WRONG == NOT_FINITE ? NAN : WRONG == NEGATIVE ? -1 : WRONG == TOO_LARGE ? 100 : 1e-3;
     for (int v = 0; batch->gradient && v < 24; v++) batch->gradient[24 * i + v] = 1;
   }
+  if (WRONG == TOO_MANY) {
+    batch->volume[batch->count] = 1e-3; // a row that is not there
+    if (batch->gradient) batch->gradient[24 * batch->count] = 1;
+  }
+  if (WRONG == SPOILS) memset((double *)batch->pairs, 0xFF, 24 * batch->count * sizeof(double));
   if (WRONG != EVALUATE_FAILS) return 0;
   snprintf(message, size, "the card fell out");
   return 4;

@@ -2,6 +2,7 @@
 """Models of tests/overlap/test_foreign.c."""
 
 import os
+import subprocess
 import time
 
 import numpy as np
@@ -89,6 +90,32 @@ def hangs(pairs):
 
 def prints(pairs):
     print("one", len(pairs))
+    return box(pairs)
+
+
+def spoils(pairs):
+    answer = box(pairs)
+    pairs[:] = np.nan
+    return answer
+
+
+def forks(pairs):
+    """The child comes back, too."""
+    if len(pairs) > 1:
+        os.fork()
+    return box(pairs)
+
+
+def starts_another(pairs):
+    """Its volumes are the number of a process that it leaves behind."""
+    other = subprocess.Popen(["sleep", "1000"], pass_fds=[3])
+    return {"volume": np.full(len(pairs), float(other.pid))}
+
+
+def dies_and_leaves_another(pairs):
+    if len(pairs) > 1:
+        subprocess.Popen(["sleep", "1000"], pass_fds=[3])
+        os.kill(os.getpid(), 9)
     return box(pairs)
 
 
