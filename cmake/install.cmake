@@ -38,12 +38,14 @@ add_custom_target(pages ALL DEPENDS ${pages}/man/man1/tetlap.1)
 install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_DATAROOTDIR})
 
 # The Python package.
-install(DIRECTORY python/tetlap DESTINATION lib/python3/dist-packages FILES_MATCHING PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY python/tetlap DESTINATION lib/python3/dist-packages FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN __pycache__ EXCLUDE)
 
-# For those that build against the library.
+# For those that build against the libraries.
 file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
-configure_file(cmake/tetlap-overlap.pc.in ${CMAKE_BINARY_DIR}/tetlap-overlap.pc @ONLY)
-install(FILES ${CMAKE_BINARY_DIR}/tetlap-overlap.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+foreach(library tetlap-overlap tetlap-run)
+  configure_file(cmake/${library}.pc.in ${CMAKE_BINARY_DIR}/${library}.pc @ONLY)
+  install(FILES ${CMAKE_BINARY_DIR}/${library}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endforeach()
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/tetlap-overlap)
 install(EXPORT tetlap-overlap NAMESPACE tetlap:: FILE tetlap-overlap-config.cmake DESTINATION ${package})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/tetlap-overlap-config-version.cmake COMPATIBILITY SameMajorVersion)

@@ -47,7 +47,7 @@ Status app_origin_compare(const Record *was, const Record *is, const char *path)
   RecordDifference d = {{0}, {0}, {0}};
   int k = 0;
   while (k < 5 && !record_differ(record_find(was, keys[k]), record_find(is, keys[k]), &d)) k++;
-  static const char advice[] = "put it back, or begin anew with `tetlap run`";
+  static const char advice[] = "put it back, or begin anew";
   switch (k) {
   case 0:
     return status_fail(STATUS_INPUT,

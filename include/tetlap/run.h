@@ -16,9 +16,11 @@
  *   tetlap_run_close(run);
  *
  * Every function that can fail returns 0 or the exit code that the program `tetlap` would have
- * (docs/output.md), and leaves a message. Nothing is printed, no process ended. Units: SI. A run belongs to
- * one thread at a time. Numbers of threads, and the level of the log, are the process's: the scene opened
- * last sets them.
+ * (docs/output.md), and leaves a message. Nothing is printed, no process ended. Units: SI.
+ *
+ * A run belongs to one thread at a time: functions that take a run that is not const refuse another, a fork
+ * of the process, and, but for tetlap_run_forces, the run's own on_step. Numbers of threads, and the level
+ * of the log, are the process's: the scene opened last sets them.
  *
  * Compatibility: structs carry their size, set by the ..._INIT macros.
  */
@@ -48,8 +50,8 @@ typedef struct TetlapRunOptions {
   const char *const *set; /* "contact.stiffness=1e6" ...: what to change in the scene (set_count) */
   int set_count;
   int threads; /* 0: the scene's, else all */
-  /* After every step, at its state. Other than 0 ends the advance there, without failure. NULL: nobody is
-   * told. */
+  /* After every step, at its state, to read it. Other than 0 ends the advance there, without failure. NULL:
+   * nobody is told. */
   int (*on_step)(void *user, TetlapRun *run);
   void *user;
 } TetlapRunOptions;

@@ -49,6 +49,15 @@ class Examples(unittest.TestCase):
             self.assertLess(max(spread / identify.TRUTH), 0.02)
             self.assertLess(misfit, 15)  # six numbers, two parameters
 
+    def test_the_gripper_lifts_the_cube_and_carries_its_weight(self):
+        import grip
+
+        told = grip.main(Path(grip.__file__).with_name("gripper.yaml"))
+        self.assertAlmostEqual(told["height"], 0.07, delta=2e-3)
+        self.assertAlmostEqual(told["carries"] / told["weight"], 1, delta=0.1)  # it still swings
+        self.assertGreater(told["presses"], 0.9 * grip.GRIP)
+        self.assertEqual(told["ground"], 0)
+
     def test_twenty_labelled_indentations_are_what_their_labels_say(self):
         import indent
 

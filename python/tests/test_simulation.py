@@ -17,6 +17,11 @@ import tetlap
 SCENE = Path(os.environ["TETLAP_SOURCE_DIR"], "tests", "scenes", "hand.yaml")
 
 
+#: What is stretched by its end's displacement, without a lateral contraction.
+BAR = {"bodies": [{"name": "bar", "mesh": {"box": {"size": [0.1, 0.1, 0.5], "cells": [1, 1, 5]}}, "material": {"young": 1e6, "poisson": 0, "density": 1000},
+                   "fixed": [{"group": "z_min"}], "driven": [{"group": "z_max", "external": True}]}], "time": {"end": 1, "static": True}}
+
+
 def opened(**arguments):
     return tetlap.Simulation(SCENE, threads=1, **arguments)
 
@@ -112,8 +117,14 @@ class Stepping(unittest.TestCase):
                 sim.restore(sim.read_state(path))
                 sim.advance(0.05)
                 np.testing.assert_array_equal(sim.bodies["block"].points, points)
-            with opened(set={"contact.friction.coefficient": 0.1}) as sim, self.assertRaisesRegex(ValueError, "the scene has changed"):
-                sim.read_state(path)
+            with opened(set={"contact.friction.coefficient": 0.1}) as sim:
+                with self.assertRaisesRegex(ValueError, "the scene has changed"):
+                    sim.read_state(path)
+                with self.assertRaisesRegex(tetlap.RunError, "no_such.h5"):
+                    sim.read_state("no_such.h5")
+                with self.assertRaisesRegex(ValueError, "hand.yaml"):
+                    sim.read_state(SCENE)
+                self.assertEqual(sim.advance(0.01), 0.01)
 
     def test_callbacks_see_every_step_and_may_end_the_advance(self):
         with opened() as sim:
@@ -145,6 +156,38 @@ class Stepping(unittest.TestCase):
             centres = sim.bodies["bar"].points[sim.bodies["bar"].tets].mean(axis=1)[:, 2]
             middle = sim.bodies["bar"].stress[(centres > 0.2) & (centres < 0.3), 2]
             self.assertAlmostEqual(middle.mean() / (20 / 0.01), 1, 2)
+
+    def test_a_static_scene_goes_from_one_prescribed_displacement_to_the_next(self):
+        with tetlap.Simulation(BAR) as sim:
+            for k in 1, 2, -1:
+                sim.drive["bar"] = [0, 0, 1e-3 * k]
+                sim.advance(0.25)
+                self.assert_stretched(sim, 1e-3 * k)
+
+    def assert_stretched(self, sim, by):
+        self.assertAlmostEqual(np.ptp(sim.bodies["bar"].points[:, 2]) - 0.5, by, 12)
+        # Hooke's law, to the first order in a strain of .4 %.
+        np.testing.assert_allclose(sim.bodies["bar"].stress[:, 2], 1e6 * by / 0.5, rtol=1e-2)
+
+    def test_a_simulation_begins_where_another_run_ended(self):
+        pulled = [{**BAR["bodies"][0], "driven": [{"group": "z_max", "table": [[0, 0, 0, 0], [1, 0, 0, 1e-3]]}]}]
+        with tempfile.TemporaryDirectory() as folder:
+            tetlap.run({**BAR, "bodies": pulled}, Path(folder, "pulled"))
+            start = os.path.relpath(Path(folder, "pulled"))  # of a dict, from here
+            with tetlap.Simulation({**BAR, "start": start}) as sim:
+                self.assert_stretched(sim, 1e-3)
+                sim.drive["bar"] = [0, 0, 1e-3]  # from where the vertices are at the start
+                sim.advance(0.5)
+                self.assert_stretched(sim, 2e-3)
+                with sim.fork() as other:
+                    self.assert_stretched(other, 2e-3)
+            run = tetlap.run(SCENE, Path(folder, "stood"), set={"time.end": 0.1})
+            with opened(set={"start": Path(folder, "stood")}) as sim:
+                self.assertEqual(sim.time, 0)
+                np.testing.assert_allclose(sim.bodies["block"].points, run.frames[-1].points, rtol=0, atol=1e-12)
+                np.testing.assert_allclose(sim.bodies["block"].velocities, run.frames[-1]["velocity"], rtol=0, atol=1e-12)
+                press(sim, 0.05)
+                self.assertTrue(sim.contacts["plate", "block"].touches or sim.contacts["block", "floor"].touches)
 
     def test_a_models_own_function_answers(self):
         pairs = []
@@ -222,6 +265,19 @@ class Refusals(unittest.TestCase):
                 os._exit(9)
             self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 7)
             sim.advance(0.001)
+
+    def test_a_fork_that_drops_its_copy_leaves_the_run_and_its_scene_alone(self):
+        scene = {"bodies": [{"name": "block", "mesh": {"box": {"size": [0.1, 0.1, 0.1], "cells": 1}},
+                             "material": {"young": 1e5, "poisson": 0.3, "density": 1000}}], "time": {"end": 0.01}}
+        with tetlap.Simulation(scene, threads=1) as sim:
+            child = os.fork()
+            if child == 0:
+                del sim
+                gc.collect()
+                os._exit(0)
+            os.waitpid(child, 0)
+            with sim.fork() as other:  # opens the dict's file again
+                self.assertEqual(other.advance(0.001), sim.advance(0.001))
 
     def test_one_thread_at_a_time(self):
         with opened() as sim:

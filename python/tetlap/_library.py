@@ -113,7 +113,7 @@ class Model:
     name, description: of the model; has_hessian: whether it gives that
     """
 
-    def __init__(self, model="clip", *, weights=None, threads=0):
+    def __init__(self, model: str | os.PathLike = "clip", *, weights: str | os.PathLike | None = None, threads: int = 0):
         if not isinstance(threads, (int, np.integer)) or threads < 0:
             raise ValueError(f"threads is {threads!r}; expected 0 (all) or how many")
         handle, info = c_void_p(), Info()
@@ -129,7 +129,7 @@ class Model:
     def __repr__(self):
         return f"<tetlap.Model {self.name}: {self.description}>"
 
-    def evaluate(self, pairs, direction, outputs):
+    def _evaluate(self, pairs, direction, outputs):
         """Fills the arrays of `outputs` (an Overlap), all contiguous, where they are not None."""
         count = pairs.size // 24
         if count > _MOST:
@@ -139,7 +139,7 @@ class Model:
             hessian=_address(outputs.hessian), centroid=_address(outputs.centroid), direction=_address(direction),
             product=_address(outputs.product), flags=_address(outputs.flags))))
 
-    def evaluate_meshes(self, points_a, tets_a, points_b, tets_b, wanted):
+    def _evaluate_meshes(self, points_a, tets_a, points_b, tets_b, wanted):
         """Of meshes with int32 vertices: first, second, volume, gradient or None, centroid or None, flags."""
         found = POINTER(List)()
         _call("meshes", self._handle, byref(_mesh(points_a, tets_a)), byref(_mesh(points_b, tets_b)), wanted, byref(found))
@@ -152,7 +152,7 @@ class Model:
             _function("list_free")(found)
 
 
-def models() -> list:
+def models() -> list[Model]:
     """The library's models, the fastest first."""
     names, name = [], _function("model")(0)
     while name:

@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ import numpy as np
 from . import _locate
 from ._errors import RunError
 from ._run import _SERVER_S, _Server
+from ._scene import OverlapModel
 
 
 def _call(words, server=None):
@@ -72,7 +74,7 @@ def _write_pairs(folder, data):
     return target
 
 
-def evaluate(model, data: str | os.PathLike | np.ndarray | None = None, *, law: str | None = None, mix=None, count: int | None = None,
+def evaluate(model: OverlapModel, data: str | os.PathLike | np.ndarray | None = None, *, law: str | None = None, mix: Mapping[str, float] | None = None, count: int | None = None,
              seed: int | None = None, paths: int | None = None, threads: int | None = None) -> dict:
     """Measures an overlap model on labelled pairs; a dict with the keys of `tetlap eval --json` (docs/training.md).
 

@@ -9,12 +9,18 @@ import subprocess
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from . import _locate, _views
 from ._errors import Error, UnknownNameError
 from ._vtu import read_pvd, read_vtu
+
+if TYPE_CHECKING:
+    import meshio
+    import pyvista
+    import xarray
 
 
 class Frame:
@@ -35,7 +41,8 @@ class Frame:
         self.point_data, self.cell_data = data["point_data"], data["cell_data"]
         self.obstacles = [Frame(obstacle, self.time) for obstacle in obstacles]
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> np.ndarray:
+        """An array of points or of cells by its name. UnknownNameError names those that there are."""
         for arrays in (self.point_data, self.cell_data):
             if name in arrays:
                 return arrays[name]
@@ -46,11 +53,11 @@ class Frame:
         """Of the arrays of points and of cells."""
         return [*self.point_data, *self.cell_data]
 
-    def to_meshio(self):
+    def to_meshio(self) -> meshio.Mesh:
         """A `meshio.Mesh` of the cells with all arrays. Error: there is no package meshio."""
         return _views.to_meshio(self.points, self.cells, self.point_data, self.cell_data)
 
-    def to_pyvista(self):
+    def to_pyvista(self) -> pyvista.UnstructuredGrid:
         """A `pyvista.UnstructuredGrid` of the cells with all arrays. Error: there is no package pyvista."""
         return _views.to_pyvista(self.points, self.cells, self.point_data, self.cell_data)
 
@@ -69,7 +76,8 @@ class Frames(Sequence):
     def __len__(self):
         return len(self._entries)
 
-    def __getitem__(self, index):
+    def __getitem__(self, index: int | slice) -> Frame | list[Frame]:
+        """One by its number, or several."""
         if isinstance(index, slice):
             return [self[i] for i in range(*index.indices(len(self)))]
         time, files = self._entries[index]
@@ -153,7 +161,7 @@ class Run:
         """"finished", "interrupted", "failed", or None while the run goes on."""
         return self.summary["outcome"] if self.summary else None
 
-    def to_xarray(self):
+    def to_xarray(self) -> xarray.Dataset:
         """An `xarray.Dataset` of the history: its columns over the coordinate `time_s`, and `points` (time_s, vertex, xyz) [m] of the frames where
         there is one a row. Error: there is no package xarray, or the run wrote no history."""
         xarray = _views.need("xarray")

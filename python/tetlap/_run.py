@@ -27,12 +27,17 @@ _SERVER_S = 2  # for a function that still computes when the run has ended
 _INTERRUPTED = 130
 
 
+def _remove_folder(path, owner):
+    if os.getpid() == owner:  # a fork of the interpreter has its own copy of the object, and not its own folder
+        shutil.rmtree(path, ignore_errors=True)
+
+
 class _Folder:
     """A temporary folder, removed with this object."""
 
     def __init__(self):
         self.path = tempfile.mkdtemp(prefix="tetlap-")
-        weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
+        weakref.finalize(self, _remove_folder, self.path, os.getpid())
 
 
 class _Watch:

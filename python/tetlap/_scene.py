@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """A scene given as a dict, as the text of a scene file."""
 
+from __future__ import annotations
+
 import json
 import math
 import os
+import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Union
@@ -61,11 +64,26 @@ def _solid_with_paths(solid):
     return solid
 
 
-def _weights_with_path(section, key):
-    """A section whose weights file, not name, counts from the current directory."""
+#: hybrid=NET.safetensors, MINE.so, MINE.py:name: an overlap model that is a file, and not a name or a command
+_MODEL_FILE = re.compile(r"(hybrid=)?(.*(?:\.safetensors|\.so|\.py(?=:)))(:.*)?", re.S)
+
+
+def _model_with_path(section, key):
+    """A section whose model's file, not name, counts from the current directory."""
     value = section.get(key)
-    is_file = isinstance(value, os.PathLike) or isinstance(value, str) and value.endswith(".safetensors")
-    return {**section, key: _from_here(value)} if is_file else section
+    if isinstance(value, os.PathLike):
+        return {**section, key: _from_here(value)}
+    file = _MODEL_FILE.fullmatch(value) if isinstance(value, str) and not value.startswith("exec:") else None
+    return {**section, key: (file[1] or "") + _from_here(file[2]) + (file[3] or "")} if file else section
+
+
+def _start_with_path(start):
+    """The other run's folder, from the current directory."""
+    if isinstance(start, (str, os.PathLike)):
+        return _from_here(start)
+    if isinstance(start, Mapping) and isinstance(start.get("run"), (str, os.PathLike)):
+        return {**start, "run": _from_here(start["run"])}
+    return start
 
 
 def with_absolute_paths(scene):
@@ -76,14 +94,16 @@ def with_absolute_paths(scene):
             result[key] = [_solid_with_paths(solid) for solid in result[key]]
     contact = result.get("contact")
     if isinstance(contact, Mapping):
-        contact = _weights_with_path(contact, "overlap")
+        contact = _model_with_path(contact, "overlap")
         if isinstance(contact.get("net"), Mapping):
-            contact = {**contact, "net": _weights_with_path(contact["net"], "weights")}
+            contact = {**contact, "net": _model_with_path(contact["net"], "weights")}
         result["contact"] = contact
+    if "start" in result:
+        result["start"] = _start_with_path(result["start"])
     return result
 
 
-def override_texts(overrides):
+def override_texts(overrides: Settings) -> list[str]:
     """KEY=VALUE for --set, of a dict or of such texts."""
     if overrides is None:
         return []

@@ -9,6 +9,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +18,12 @@ from ._channel import Channel
 from ._errors import Error, UnknownNameError
 from ._run import _Folder, _Server
 from ._scene import OverlapModel, Scene, Settings, override_texts, scene_text, with_absolute_paths
+
+if TYPE_CHECKING:
+    import IPython.display
+    import meshio
+    import pyvista
+    from numpy.typing import ArrayLike
 
 _FORCES, _STRESS = 1, 2
 _NEXT_ADVANCE = -1.0
@@ -95,11 +102,11 @@ class Body:
         return (self.points.copy(), self.tets.copy(),
                 {"velocity": self.velocities.copy(), "contact_force": self.forces.copy(), "contact_pressure": self.pressure.copy()}, own)
 
-    def to_meshio(self):
+    def to_meshio(self) -> meshio.Mesh:
         """A `meshio.Mesh` of the present, copied, with velocities, forces, pressure and stress. Error: there is no package meshio."""
         return _views.to_meshio(*self._fields())
 
-    def to_pyvista(self):
+    def to_pyvista(self) -> pyvista.UnstructuredGrid:
         """A `pyvista.UnstructuredGrid` of the same. Error: there is no package pyvista."""
         return _views.to_pyvista(*self._fields())
 
@@ -220,10 +227,10 @@ class _Groups:
     def __contains__(self, name):
         return name in self._vertices
 
-    def __setitem__(self, name, value):
+    def __setitem__(self, name: str, value: ArrayLike) -> None:
         self.set(name, value)
 
-    def __getitem__(self, name) -> np.ndarray:
+    def __getitem__(self, name: str) -> np.ndarray:
         """What was set last, a copy; zeros before. NaN: not known, since a state of a file was restored."""
         self._check_name(name)
         return self._values[name].copy()
@@ -261,7 +268,7 @@ class Drive(_Groups):
         sim.drive.set("finger", [0, 0, -0.001], ramp=0.1)        reached in .1 s
     """
 
-    def set(self, name: str, value, ramp: float | None = None) -> None:
+    def set(self, name: str, value: ArrayLike, ramp: float | None = None) -> None:
         """Moves the group straight on to a displacement, in `ramp` seconds; None: until the next advance ends."""
         self._send(name, value, _ramp(ramp))
 
@@ -274,7 +281,7 @@ class Loads(_Groups):
         sim.loads.set("ball", [0, 0, -1], ramp=0.1)              grown in .1 s; ramp=None: until the next advance ends
     """
 
-    def set(self, name: str, value, ramp: float | None = 0.0) -> None:
+    def set(self, name: str, value: ArrayLike, ramp: float | None = 0.0) -> None:
         """Changes the load straight on, in `ramp` seconds; None: until the next advance ends."""
         self._send(name, value, _ramp(ramp))
 
@@ -479,7 +486,7 @@ class Simulation:
         """Writes what was set so far, and when, as lines of JSON: `tetlap run SCENE --replay PATH` does the same again."""
         self._channel.ask(_channel.RECORD, os.fspath(path).encode())
 
-    def show(self, every: float = 0.2):
+    def show(self, every: float = 0.2) -> IPython.display.DisplayHandle:
         """In a notebook: a view that follows the run, renewed after a step at most once in `every` seconds of wall time, and the
         display handle, whose `update` shows anything else. Error: there is no package IPython."""
         handle = _views.show_html(self._repr_html_())

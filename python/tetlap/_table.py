@@ -248,7 +248,7 @@ class Results(Sequence):
     def __len__(self) -> int:
         return len(self.index)
 
-    def __getitem__(self, which):
+    def __getitem__(self, which: str | int | slice) -> np.ndarray | dict[str, np.ndarray] | list[dict[str, np.ndarray]]:
         """A field of all good results by its name, (n, …), read-only; or one result by its number, a dict of arrays."""
         if isinstance(which, str):
             return self._field(which)

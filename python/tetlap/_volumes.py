@@ -7,11 +7,14 @@ import enum
 import functools
 import os
 from dataclasses import dataclass
-from typing import NamedTuple, Optional
+from typing import TYPE_CHECKING, NamedTuple, Optional
 
 import numpy as np
 
 from . import _library
+
+if TYPE_CHECKING:
+    import scipy.sparse
 
 
 class Flag(enum.IntFlag):
@@ -144,7 +147,7 @@ def overlap(x: np.ndarray, model: str | os.PathLike | _library.Model = "clip", o
         out = Overlap(**{name: np.empty(*shape_and_dtype) for name, shape_and_dtype in outputs.items()})
     else:
         _check_out(out, outputs, x, vector)
-    model.evaluate(x, vector, out)
+    model._evaluate(x, vector, out)
     return out
 
 
@@ -196,12 +199,12 @@ def mesh_pairs(points_a: np.ndarray, tets_a: np.ndarray, points_b: np.ndarray, t
     model = _model(model, threads)
     a, b = _mesh(points_a, tets_a, "a"), _mesh(points_b, tets_b, "b")
     wanted = _library.VOLUME | (_library.GRADIENT if order else 0) | (_library.CENTROID if centroid else 0)
-    found = model.evaluate_meshes(*a, *b, wanted)
+    found = model._evaluate_meshes(*a, *b, wanted)
     return MeshPairs(*found, (len(a[1]), len(b[1])))
 
 
 def mesh_overlap(points_a: np.ndarray, tets_a: np.ndarray, points_b: np.ndarray, tets_b: np.ndarray, model: str | os.PathLike | _library.Model = "clip",
-                 *, threads: int = 0):
+                 *, threads: int = 0) -> scipy.sparse.csr_matrix | MeshPairs:
     """The overlap volumes of two meshes, a sparse matrix (tetrahedra of a, of b): scipy.sparse.csr_matrix where SciPy is
     installed, else what `mesh_pairs` gives."""
     pairs = mesh_pairs(points_a, tets_a, points_b, tets_b, model, threads=threads)

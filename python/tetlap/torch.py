@@ -9,13 +9,21 @@ The first derivative is the model's own ∇V. The second is its ∇²V, given as
 down, so that no matrix of 24 x 24 is made; models without ∇²V refuse that, by name.
 """
 
+from __future__ import annotations
+
+import os
 import warnings
+from collections.abc import Mapping
 
 import torch
 
 from ._gradient import gradient as _gradient_of_arrays
-from ._scene import override_texts
+from ._library import Model
+from ._scene import Scene, Settings, override_texts
 from ._volumes import _model, overlap as _overlap_of_arrays
+from ._weights import Weights
+
+__all__ = ["network", "overlap", "run"]
 
 
 def _check(x):
@@ -66,7 +74,7 @@ class _Gradient(torch.autograd.Function):
         return torch.from_numpy(result.product).to(x.dtype), None, None
 
 
-def overlap(x, model="clip", threads=0):
+def overlap(x: torch.Tensor, model: str | os.PathLike | Model = "clip", threads: int = 0) -> torch.Tensor:
     """The overlap volumes (…) of the pairs x (…, 2, 4, 3), of the same dtype; computed in float64 whatever that is.
 
     Differentiable once with every model, twice with those that have a Hessian. `model` and `threads` as for
@@ -93,7 +101,7 @@ class _Layers(torch.nn.Module):
         return self.layer[-1](x)
 
 
-def network(weights):
+def network(weights: Weights) -> torch.nn.Module:
     """The layers of a `geo` (tetlap.read_weights) as a torch.nn.Module: features (n, inputs) to outputs (n, outputs). Its
     state_dict is what tetlap.write_weights takes, with the same shape.
 
@@ -140,7 +148,7 @@ def _check_parameters(parameters):
             raise ValueError(f"{key} is a tensor of shape {tuple(value.shape)} on {value.device}; expected one number on the CPU")
 
 
-def run(scene, parameters, of, *, set=None):
+def run(scene: Scene, parameters: Mapping[str, torch.Tensor], of: str | list[str], *, set: Settings = None) -> torch.Tensor:  # noqa: A002
     """The quantities `of` (a list as of tetlap.gradient) at the end of a scene's run, a tensor (of) in float64.
 
     parameters: {key of the scene: tensor of one number}; they replace the scene's values. Differentiable once by all of them. A

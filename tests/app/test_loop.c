@@ -312,6 +312,24 @@ START_TEST(what_makes_no_sense_is_refused_by_name) {
 }
 END_TEST
 
+START_TEST(a_state_of_another_version_is_refused) {
+  AppLoopState state, again;
+  char path[128], own[256];
+  snprintf(path, sizeof path, "%s/state.h5", folder);
+  open_loop("hand", NULL);
+  snprintf(own, sizeof own, "%s", record_find_text(loop.origin, "program"));
+  record_text(loop.origin, "program", "tetlap 0.0.9");
+  ck_assert_ok(app_loop_state_keep(&loop, &state));
+  ck_assert_ok(app_loop_state_write(&loop, &state, path));
+  record_text(loop.origin, "program", own);
+  expect(app_loop_state_read(&loop, &again, path), "was written by \"tetlap 0.0.9\"; this is");
+  app_loop_state_destroy(&again);
+  ck_assert_ok(app_loop_state_restore(&loop, &state)); // of this one it still is
+  app_loop_state_destroy(&state);
+  app_loop_close(&loop);
+}
+END_TEST
+
 START_TEST(a_static_scene_goes_from_equilibrium_to_equilibrium) {
   int contact;
   open_loop("hand", "time.static=true");
@@ -435,6 +453,7 @@ int main(void) {
   tcase_add_test(test_case, a_replay_is_the_run_that_was_stepped_to_the_last_bit);
   tcase_add_test(test_case, a_wrench_is_shared_so_that_force_and_moment_are_its);
   tcase_add_test(test_case, what_makes_no_sense_is_refused_by_name);
+  tcase_add_test(test_case, a_state_of_another_version_is_refused);
   tcase_add_test(test_case, a_static_scene_goes_from_equilibrium_to_equilibrium);
   tcase_add_test(test_case, an_advance_ends_where_a_condition_holds);
   tcase_add_test(test_case, what_never_changes_is_made_once);

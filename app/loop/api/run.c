@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <tetlap/run.h>
 
+#include <pthread.h>
+#include <stdatomic.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "app/loop/loop.h"
 #include "app/loop/state.h"
@@ -11,6 +14,10 @@
 struct TetlapRun {
   AppLoop loop;
   TetlapRunOptions options;
+  pid_t process;       // that opened it
+  atomic_bool is_busy; // a call that may change it goes on
+  atomic_bool tells;   // ... which is in on_step
+  pthread_t teller;    // its thread
 };
 
 struct TetlapRunState {
@@ -31,9 +38,35 @@ static Status check_size(size_t given, size_t known, const char *what) {
                      known);
 }
 
+static Status check_process(const TetlapRun *run) {
+  if (getpid() == run->process) return STATUS_OK;
+  return status_fail(STATUS_USAGE,
+                     "the run belongs to the process that opened it; a fork of it has to open its own");
+}
+
+// Nobody else may change it until `leave`.
+static Status enter(TetlapRun *run) {
+  TRY(check_process(run));
+  if (!atomic_exchange(&run->is_busy, true)) return STATUS_OK;
+  return status_fail(STATUS_USAGE, "another thread, or the run's own on_step, is using it: one at a time");
+}
+
+static int leave(TetlapRun *run, Status status) {
+  atomic_store(&run->is_busy, false);
+  return code_of(status);
+}
+
+static Status check_given(const void *given, const char *what) {
+  return given ? STATUS_OK : status_fail(STATUS_USAGE, "%s is NULL", what);
+}
+
 static Status tell_step(void *self, AppLoop *loop) {
   TetlapRun *run = self;
-  if (run->options.on_step && run->options.on_step(run->options.user, run)) app_loop_stop(loop);
+  if (!run->options.on_step) return STATUS_OK;
+  run->teller = pthread_self();
+  atomic_store(&run->tells, true);
+  if (run->options.on_step(run->options.user, run)) app_loop_stop(loop);
+  atomic_store(&run->tells, false);
   return STATUS_OK;
 }
 
@@ -57,6 +90,7 @@ static Status open_run(TetlapRun *run, const char *scene, const TetlapRunOptions
   TRY(take_options(scene, options, &taken));
   TRY(app_loop_open(&run->loop, &taken));
   if (options) run->options = *options;
+  run->process = getpid();
   run->loop.on_step = tell_step;
   run->loop.on_step_self = run;
   return STATUS_OK;
@@ -81,7 +115,8 @@ double tetlap_run_time(const TetlapRun *run) {
 }
 
 int tetlap_run_advance(TetlapRun *run, double until) {
-  return code_of(app_loop_advance(&run->loop, until));
+  Status status = enter(run);
+  return status ? code_of(status) : leave(run, app_loop_advance(&run->loop, until));
 }
 
 static Status check_number(int number, int count, const char *what) {
@@ -133,8 +168,13 @@ const double *tetlap_run_velocities(const TetlapRun *run) {
   return app_loop_state(&run->loop)->velocities;
 }
 
+// From within on_step, too.
 int tetlap_run_forces(TetlapRun *run, const double **forces, const double **pressure) {
-  return code_of(app_loop_vertex_forces(&run->loop, forces, pressure));
+  *forces = *pressure = NULL;
+  if (atomic_load(&run->tells) && pthread_equal(run->teller, pthread_self()))
+    return code_of(app_loop_vertex_forces(&run->loop, forces, pressure));
+  Status status = enter(run);
+  return status ? code_of(status) : leave(run, app_loop_vertex_forces(&run->loop, forces, pressure));
 }
 
 int tetlap_run_stress(const TetlapRun *run, double *stress) {
@@ -172,6 +212,8 @@ int tetlap_run_contact_at(const TetlapRun *run, int number, TetlapRunContact *co
 
 static Status find_contact(const TetlapRun *run, const char *a, const char *b, TetlapRunContact *contact) {
   int number;
+  TRY(check_given(a, "a name"));
+  TRY(check_given(b, "a name"));
   TRY(app_loop_contact(&run->loop, a, b, &number));
   return describe_contact(run, number, strcmp(run->loop.contacts[number].a, a) == 0 ? 1 : -1, contact);
 }
@@ -180,12 +222,21 @@ int tetlap_run_contact(const TetlapRun *run, const char *a, const char *b, Tetla
   return code_of(find_contact(run, a, b, contact));
 }
 
+static Status set(TetlapRun *run, AppLoopKind kind, const char *name, const double *values, int count,
+                  double ramp) {
+  TRY(check_given(name, "a name"));
+  TRY(check_given(values, "what is to be set"));
+  return app_loop_set(&run->loop, kind, name, ramp, values, count);
+}
+
 int tetlap_run_drive(TetlapRun *run, const char *name, const double to[3], double ramp) {
-  return code_of(app_loop_set(&run->loop, APP_LOOP_DRIVE, name, ramp, to, 3));
+  Status status = enter(run);
+  return status ? code_of(status) : leave(run, set(run, APP_LOOP_DRIVE, name, to, 3, ramp));
 }
 
 int tetlap_run_load(TetlapRun *run, const char *name, const double *values, int count, double ramp) {
-  return code_of(app_loop_set(&run->loop, APP_LOOP_LOAD, name, ramp, values, count));
+  Status status = enter(run);
+  return status ? code_of(status) : leave(run, set(run, APP_LOOP_LOAD, name, values, count, ramp));
 }
 
 int tetlap_run_record(const TetlapRun *run, const char *path) {
@@ -193,23 +244,30 @@ int tetlap_run_record(const TetlapRun *run, const char *path) {
 }
 
 // A new one, filled by keeping or by reading.
-static int make_state(TetlapRunState **state, TetlapRun *keep, const TetlapRun *of, const char *path) {
+static Status make_state(TetlapRunState **state, TetlapRun *keep, const TetlapRun *of, const char *path) {
   TetlapRunState *made = memory_zeroed(1, sizeof *made);
-  *state = NULL;
   Status status = !made  ? status_no_memory("a state")
                   : keep ? app_loop_state_keep(&keep->loop, &made->state)
                          : app_loop_state_read(&of->loop, &made->state, path);
   if (status) tetlap_run_state_free(made);
   if (!status) *state = made;
-  return code_of(status);
+  return status;
 }
 
 int tetlap_run_keep(TetlapRun *run, TetlapRunState **state) {
-  return make_state(state, run, NULL, NULL);
+  *state = NULL;
+  Status status = enter(run);
+  return status ? code_of(status) : leave(run, make_state(state, run, NULL, NULL));
+}
+
+static Status restore(TetlapRun *run, const TetlapRunState *state) {
+  TRY(check_given(state, "the state"));
+  return app_loop_state_restore(&run->loop, &state->state);
 }
 
 int tetlap_run_restore(TetlapRun *run, const TetlapRunState *state) {
-  return code_of(app_loop_state_restore(&run->loop, &state->state));
+  Status status = enter(run);
+  return status ? code_of(status) : leave(run, restore(run, state));
 }
 
 void tetlap_run_state_free(TetlapRunState *state) {
@@ -222,5 +280,6 @@ int tetlap_run_state_write(const TetlapRun *run, const TetlapRunState *state, co
 }
 
 int tetlap_run_state_read(const TetlapRun *run, TetlapRunState **state, const char *path) {
-  return make_state(state, NULL, run, path);
+  *state = NULL;
+  return code_of(make_state(state, NULL, run, path));
 }
