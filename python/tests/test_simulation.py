@@ -54,6 +54,8 @@ class Stepping(unittest.TestCase):
             floor, plate = sim.contacts["block", "floor"], sim.contacts["plate", "block"]
             self.assertTrue(floor.touches and plate.touches)
             np.testing.assert_array_equal(plate.force, -sim.contacts["block", "plate"].force)
+            with opened() as apart:
+                self.assertFalse(np.signbit(apart.contacts["plate", "block"].force).any())
             total = floor.force - plate.force
             np.testing.assert_allclose(sim.bodies["block"].forces.sum(axis=0), total, atol=1e-9 * np.abs(total).max())
             self.assertGreater(sim.bodies["block"].pressure.max(), 0)
@@ -158,11 +160,14 @@ class Stepping(unittest.TestCase):
             self.assertAlmostEqual(middle.mean() / (20 / 0.01), 1, 2)
 
     def test_a_static_scene_goes_from_one_prescribed_displacement_to_the_next(self):
-        with tetlap.Simulation(BAR) as sim:
+        steps = []
+        with tetlap.Simulation(BAR, set={"output.frames": 1}) as sim:
+            sim.on_step(lambda it: steps.append(it.time))
             for k in 1, 2, -1:
                 sim.drive["bar"] = [0, 0, 1e-3 * k]
                 sim.advance(0.25)
                 self.assert_stretched(sim, 1e-3 * k)
+        self.assertEqual(steps, [0.25, 0.5, 0.75])  # with one frame no load steps but those that were asked for
 
     def assert_stretched(self, sim, by):
         self.assertAlmostEqual(np.ptp(sim.bodies["bar"].points[:, 2]) - 0.5, by, 12)
@@ -215,6 +220,10 @@ class Refusals(unittest.TestCase):
                                 (lambda: sim.drive.set("block", [0, 0, 0]), "'plate'"), (lambda: sim.loads.set("plate", [0, 0, 0]), "'block'")):
                 with self.assertRaisesRegex(KeyError, words):
                     call()
+        with tetlap.Simulation(BAR) as sim, self.assertRaisesRegex(KeyError, "no entry of.*loads"):
+            sim.loads["bar"] = [0, 0, 1]
+        with tetlap.Simulation({**BAR, "bodies": [{**BAR["bodies"][0], "driven": []}]}) as sim, self.assertRaisesRegex(KeyError, "obstacle's"):
+            sim.drive["bar"] = [0, 0, 1]
 
     def test_values_that_make_no_sense_leave_the_run_as_it_was(self):
         with opened() as sim:
@@ -222,13 +231,15 @@ class Refusals(unittest.TestCase):
             for call, words in ((lambda: sim.drive.set("plate", [0, 0]), r"shape \(2,\); expected \(3,\)"),
                                 (lambda: sim.drive.set("plate", [0, 0, np.nan]), "value 2 is nan"),
                                 (lambda: sim.loads.set("block", np.zeros((3, 2))), r"expected \(3,\) or \(6,\) or \(64, 3\)"),
+                                (lambda: sim.loads.set("block", 5), r"shape \(\); expected"),
                                 (lambda: sim.drive.set("plate", [0, 0, 0], ramp=0), "cannot jump"),
                                 (lambda: sim.advance(until=0.001), "cannot go back"), (lambda: sim.advance(-0.001), "cannot go back"),
                                 (lambda: sim.advance(10), "ends at t = 0.2 s"), (lambda: sim.advance(until=np.nan), "not nan"),
                                 (lambda: sim.loads.set("block", [0, 0, 0], ramp=-1), "0 seconds or more, not -1")):
                 with self.assertRaisesRegex(ValueError, words):
                     call()
-            for call in (lambda: sim.advance(), lambda: sim.advance(0.1, until=1), lambda: sim.drive.set("plate", "up"), lambda: sim.restore(3),
+            for call in (lambda: sim.advance(0.01, stop=5), lambda: sim.on_step(5), lambda: sim.on_contact(None),
+                         lambda: sim.advance(), lambda: sim.advance(0.1, until=1), lambda: sim.drive.set("plate", "up"), lambda: sim.restore(3),
                          lambda: sim.advance("x"), lambda: sim.loads.set("block", [0, 0, 0], ramp="x")):
                 with self.assertRaises(TypeError):
                     call()

@@ -53,6 +53,12 @@ def _ramp(value):
     return value
 
 
+def _check_callable(function, what):
+    if not callable(function):
+        raise TypeError(f"{what} takes a function, not {function!r}")
+    return function
+
+
 class Body:
     """A body of a Simulation, or an obstacle with a mesh: views of its arrays.
 
@@ -120,20 +126,23 @@ class Contact:
     def __init__(self, row: np.ndarray, a: str, b: str, sign: float):
         self._row, self._sign, self.a, self.b = row, sign, a, b
 
+    def _of_a(self, begin):
+        return self._sign * self._row[begin : begin + 3] + 0.0  # without -0
+
     @property
     def force(self) -> np.ndarray:
         """On `a`, friction included [N], (3)."""
-        return self._sign * self._row[0:3]
+        return self._of_a(0)
 
     @property
     def moment(self) -> np.ndarray:
         """Of that force about the origin [N m], (3); about p it is moment - cross(p, force)."""
-        return self._sign * self._row[3:6]
+        return self._of_a(3)
 
     @property
     def impulse(self) -> np.ndarray:
         """Of that force since the run began [N s], (3): differences of it are changes of momentum."""
-        return self._sign * self._row[9:12]
+        return self._of_a(9)
 
     @property
     def centre(self) -> np.ndarray:
@@ -236,8 +245,13 @@ class _Groups:
         return self._values[name].copy()
 
     def _check_name(self, name):
-        if name not in self._vertices:
-            raise _named(self._vertices, name, "group that is driven from outside" if self._kind == "drive" else "load from outside")
+        if name in self._vertices:
+            return
+        what = "group that is driven from outside" if self._kind == "drive" else "load from outside"
+        if not self._vertices:
+            where = "entry of `driven` and no obstacle's `motion`" if self._kind == "drive" else "entry of `loads`"
+            raise UnknownNameError(f"there is no {what} {name!r}: no {where} in the scene says `external: true`")
+        raise _named(self._vertices, name, what)
 
     def _take(self, values):
         """The values of a state; None: not known."""
@@ -246,7 +260,7 @@ class _Groups:
     def _check(self, name, value):
         self._check_name(name)
         try:
-            value = np.ascontiguousarray(value, dtype=np.float64)
+            value = np.asarray(value, dtype=np.float64)
         except (TypeError, ValueError) as error:
             raise TypeError(f"{name!r} was set to what is no array of numbers: {error}") from None
         shapes = [(3,)] if self._kind == "drive" else [(3,), (6,), (self._vertices[name], 3)]
@@ -403,20 +417,22 @@ class Simulation:
         if (dt is None) == (until is None):
             raise TypeError("advance takes a step, advance(0.01), or a time, advance(until=0.5)")
         until = self.time + _seconds(dt, "a step") if until is None else _seconds(until, "a time")
+        if stop is not None:
+            _check_callable(stop, "stop")
         watches = self._on_step or self._on_contact or stop
         self._change(_channel.ADVANCE, a=_channel.bits(until), b=1 if watches else 0, on_step=lambda: self._tell(stop))
         return self.time
 
     def on_step(self, function: Callable[[Simulation], object]) -> Callable:
         """From now on `function(sim)` is called after every step of the integrator; true ends the advance. Also a decorator."""
-        self._on_step.append(function)
+        self._on_step.append(_check_callable(function, "on_step"))
         return function
 
     def on_contact(self, function: Callable[[Simulation, Contact, bool], object]) -> Callable:
         """From now on `function(sim, contact, begins)` is called after the step in which two begin or cease to touch; true ends the
         advance. Also a decorator."""
+        self._on_contact.append(_check_callable(function, "on_contact"))
         self._touching = self._find_touching()
-        self._on_contact.append(function)
         return function
 
     def _forget_callbacks(self):
