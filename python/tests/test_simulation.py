@@ -4,6 +4,7 @@
 import gc
 import os
 import signal
+import subprocess
 import tempfile
 import threading
 import time
@@ -127,6 +128,39 @@ class Stepping(unittest.TestCase):
                 with self.assertRaisesRegex(ValueError, "hand.yaml"):
                     sim.read_state(SCENE)
                 self.assertEqual(sim.advance(0.01), 0.01)
+
+    def replay(self, folder, *lines):
+        """The program's run of a record: exit code and messages."""
+        if lines:
+            Path(folder, "record.jsonl").write_text("\n".join(lines) + "\n", encoding="utf-8")
+        done = subprocess.run([os.environ["TETLAP_PROGRAM"], "run", SCENE, "--replay", Path(folder, "record.jsonl"), "-o", Path(folder, "out"),
+                               "--threads=1", "-q"], capture_output=True, text=True, check=False)
+        return done.returncode, done.stderr
+
+    def test_the_program_does_again_what_was_recorded(self):
+        with tempfile.TemporaryDirectory() as folder, opened() as sim:
+            press(sim, 0.05)
+            with sim.fork() as other:  # what led to a fork is of its record, too
+                press(other, 0.1)
+                other.loads["block"] = [0, 0, 0, 0, 1e-3, 0]
+                other.advance(until=0.15, stop=lambda it: it.contacts["plate", "block"].force[2] > 20)
+                other.advance(until=other.end)
+                other.record(Path(folder, "record.jsonl"))
+                self.assertEqual(self.replay(folder), (0, ""))
+                np.testing.assert_array_equal(tetlap.read(Path(folder, "out")).frames[-1].points, other.bodies["block"].points)
+
+    def test_a_record_that_does_not_fit_is_told_with_its_line(self):
+        first = '{"format": 1, "vertices": 64}'
+        with tempfile.TemporaryDirectory() as folder:
+            for lines, words in ((("{}",), "1: is no record of a run"), (('{"format": 1, "vertices": 8}',), "1: is of a scene with 8 vertices, this one has 64"),
+                                 ((first, '{"drive": "plat", "to": [0, 0, 0]}'), "2: nothing that is driven.*there is 'plate'"),
+                                 ((first, '{"load": "block", "to": [0, 0], "ramp": 0}'), "2: 'block': a load has 3 values"),
+                                 ((first, '{"load": "block", "to": [0, 0, "x"], "ramp": 0}'), "2: 'block': value 2 is nan"),
+                                 ((first, '{"advance": 0.01}', '{"advance": 0.001}'), "3: the run is at.*cannot go back"),
+                                 ((first, '{"leap": 1}'), "2: expected drive, load, advance or anew"), ((first, "{"), "record.jsonl")):
+                code, said = self.replay(folder, *lines)
+                self.assertEqual(code, 65, said)
+                self.assertRegex(said, words)
 
     def test_callbacks_see_every_step_and_may_end_the_advance(self):
         with opened() as sim:

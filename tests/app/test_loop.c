@@ -14,6 +14,7 @@
 #include "fem/effect/contact/contact.h"
 #include "fem/effect/elements/packs.h"
 #include "fem/model/compliance.h"
+#include "fem/run/run_state.h"
 #include "folder.h"
 #include "scene.h"
 
@@ -270,6 +271,27 @@ START_TEST(a_replay_is_the_run_that_was_stepped_to_the_last_bit) {
 }
 END_TEST
 
+static long long restarts(void) {
+  return fem_run_state_stats(fem_run_session_state(loop.session)).restarts;
+}
+
+START_TEST(the_integrator_begins_anew_only_where_a_force_jumps) {
+  const double down[3] = {0, 0, -0.001}, pull[3] = {0.5, 0, 0}, none[3] = {0, 0, 0};
+  open_loop("hand", NULL);
+  ck_assert_ok(app_loop_advance(&loop, 0.005)); // in free fall, where no step is taken back
+  const long long before = restarts();
+  ck_assert_ok(app_loop_set(&loop, APP_LOOP_LOAD, "block", 0.01, pull, 3));
+  ck_assert_ok(app_loop_set(&loop, APP_LOOP_DRIVE, "plate", 0.01, down, 3));
+  ck_assert_ok(app_loop_set(&loop, APP_LOOP_DRIVE, "plate", APP_LOOP_NEXT_ADVANCE, down, 3));
+  ck_assert_ok(app_loop_advance(&loop, 0.006));
+  ck_assert_ok(app_loop_advance(&loop, 0.007));
+  ck_assert_int_eq(restarts(), before);
+  ck_assert_ok(app_loop_set(&loop, APP_LOOP_LOAD, "block", 0, none, 3));
+  ck_assert_int_eq(restarts(), before + 1);
+  app_loop_close(&loop);
+}
+END_TEST
+
 // Weight of everything that is at rest, its centre left where it is.
 START_TEST(a_wrench_is_shared_so_that_force_and_moment_are_its) {
   open_loop("hand", NULL);
@@ -461,6 +483,7 @@ int main(void) {
   tcase_add_test(test_case, what_is_set_moves_the_bodies);
   tcase_add_test(test_case, what_is_kept_and_restored_goes_on_to_the_same_bits);
   tcase_add_test(test_case, a_replay_is_the_run_that_was_stepped_to_the_last_bit);
+  tcase_add_test(test_case, the_integrator_begins_anew_only_where_a_force_jumps);
   tcase_add_test(test_case, a_wrench_is_shared_so_that_force_and_moment_are_its);
   tcase_add_test(test_case, what_makes_no_sense_is_refused_by_name);
   tcase_add_test(test_case, a_state_of_another_version_is_refused);
