@@ -309,9 +309,11 @@ static Status print_audit(const AppComparison *comparison, FILE *stream) {
   app_comparison_tell_audit(comparison, told, sizeof told);
   if (*told) fprintf(stream, "audit: %s%s\n", audited_states(comparison) ? "" : "–; ", told);
   if (audited_states(comparison) == 0) return STATUS_OK;
-  fprintf(stream, "audit: errors against %s in the same %d %s of its run; sums weigh states by their size\n",
-          comparison->models[comparison->reference].name, audited_states(comparison),
-          audited_states(comparison) == 1 ? "state" : "states");
+  fprintf(
+      stream,
+      "audit: errors against %s, as shares, in the same %d %s of its run; sums weigh states by their size\n",
+      comparison->models[comparison->reference].name, audited_states(comparison),
+      audited_states(comparison) == 1 ? "state" : "states");
   for (int m = 0; m < comparison->model_count; m++) {
     const AppComparisonModel *model = &comparison->models[m];
     for (int k = 0; k < APP_AUDIT_KIND_COUNT && model->audit.count > 0; k++)
@@ -325,7 +327,7 @@ Status app_comparison_print_table(const AppComparison *comparison, FILE *stream)
   Row rows[APP_MAX_MODELS];
   for (int m = 0; m < comparison->model_count; m++) rows[m] = row_of(comparison, m);
   TRY(print_audit(comparison, stream));
-  fprintf(stream, "own runs: each model on its own trajectory; reference: %s\n",
+  fprintf(stream, "own runs: each model on its own trajectory, errors as shares; reference: %s\n",
           comparison->models[comparison->reference].name);
   const AppTablePart parts[] = {{name_columns, NAME_COUNT, rows, sizeof *rows},
                                 {run_columns, RUN_COUNT, rows, sizeof *rows}};

@@ -439,8 +439,8 @@ static Status check_stall(FemIntegrator *integrator) {
            "the run %s: at the pace of the last %d steps the rest of it would take %.2g more",
            verdict == FEM_STALL_STANDS ? "stalls" : "creeps", FEM_STALL_WINDOW, stall->left);
   FemReason reason = {
-      what, "a smaller contact.stiffness, another contact.overlap than tpn, whose force jumps, or some "
-            "effects.damping"};
+      what, "a smaller contact.stiffness, another contact.overlap where the model's force jumps, as that of "
+            "tpn does, or some effects.damping"};
   return say_why(integrator, integrator->time, stats.last_step, find_worst(integrator, IDA_ERR_FAIL), reason);
 }
 
