@@ -2,21 +2,18 @@
 #include "fem/output/recorder.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
 #include "base/files/file.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/ranks.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/output/columns.h"
 #include "fem/output/moments.h"
 #include "fem/output/reactions.h"
 #include "fem/output/stress.h"
-#include "fem/output/vtk/pvd.h"
 #include "fem/output/vtk/vtu.h"
 
 static bool has_column(const FemRecorder *recorder, int column) {
@@ -102,17 +99,13 @@ static Status create(FemRecorder *recorder, const char *directory) {
                         (directory && model->scene->write_vtu) || model->probe_count > 0));
   if (!directory) return STATUS_OK;
   recorder->writes_vtu = model->scene->write_vtu;
-  recorder->writes_pieces = recorder->writes_vtu && model->scene->write_pieces;
-  if (recorder->writes_pieces)
-    TRY(ranks()->worst(fem_vtu_part_create(&recorder->part, model->vertex_count, model->tet_count,
-                                           (const int(*)[4])model->tets, model->share)));
   recorder->writes_history = model->scene->history;
   recorder->directory = memory_copy(directory, strlen(directory) + 1, 1);
   bool has_reactions = fem_reactions_any(model);
   if (has_reactions) recorder->reaction = memory_zeroed(3 * vertices, sizeof *recorder->reaction);
   if (!recorder->directory || (has_reactions && !recorder->reaction))
     return status_no_memory("the output arrays");
-  if (recorder->writes_vtu) TRY(fem_obstacle_frames_create(&recorder->obstacles, model));
+  if (recorder->writes_vtu) TRY(fem_frames_create(&recorder->frames, model, recorder->directory));
   TRY(file_make_directories(directory));
   if (!recorder->writes_history) return STATUS_OK;
   char *path = file_join(directory, "history.csv");
@@ -145,8 +138,8 @@ Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char 
 }
 
 void fem_recorder_destroy(FemRecorder *recorder) {
+  fem_frames_destroy(&recorder->frames); // first: one may be being written
   fem_history_destroy(&recorder->history);
-  fem_obstacle_frames_destroy(&recorder->obstacles);
   memory_free(recorder->directory);
   memory_free(recorder->row);
   fem_forces_destroy(&recorder->forces);
@@ -158,7 +151,6 @@ void fem_recorder_destroy(FemRecorder *recorder) {
   memory_free(recorder->overlap);
   fem_trouble_watch_destroy(&recorder->watch);
   overlap_model_destroy(&recorder->reference);
-  fem_vtu_part_destroy(&recorder->part);
   *recorder = (FemRecorder){0};
 }
 
@@ -315,8 +307,6 @@ static void fill_von_mises(void *self, size_t first, size_t count, double *value
   }
 }
 
-enum { NAME_SIZE = 32 };
-
 // Moves the arrays that have values to the front; how many.
 static int keep_given(FemVtuArray *arrays, size_t count) {
   int kept = 0;
@@ -325,24 +315,16 @@ static int keep_given(FemVtuArray *arrays, size_t count) {
   return kept;
 }
 
-static Status write_whole(const FemRecorder *recorder, const char *name, const FemVtuFrame *frame) {
-  char *path = file_join(recorder->directory, name);
-  if (!path) return status_no_memory("a file name");
-  Status status = fem_vtu_write(path, frame);
-  memory_free(path);
-  return status;
-}
-
 // Whether forces depend on more than positions and velocities: on what the last accepted state has left.
 static bool has_history(const FemSystem *system) {
   return fem_forces_has_friction(system) || fem_system_effect(system, &fem_effect_plasticity);
 }
 
-// `name` without its ending.
-static Status write_vtu(FemRecorder *recorder, const char *name) {
+static Status write_frame(FemRecorder *recorder) {
   const FemSystem *system = recorder->system;
   const FemModel *model = system->model;
   const FemState *state = recorder->state;
+  TRY(fem_forces_take_surface(&recorder->forces, state));
   if (recorder->reaction) TRY(fem_reactions_measure(recorder->system, state, NULL, recorder->reaction));
   const ContactStatus *status = recorder->status;
   const int *verdicts[] = {status ? status->predicted : NULL, status ? status->exact : NULL,
@@ -386,57 +368,14 @@ static Status write_vtu(FemRecorder *recorder, const char *name) {
                              .cells = model->tets[0],
                              .arrays = arrays,
                              .array_count = keep_given(arrays, sizeof arrays / sizeof *arrays)};
-  if (recorder->writes_pieces)
-    return fem_vtu_pieces_write(recorder->directory, name, &frame, &recorder->part);
-  char file[NAME_SIZE + 8];
-  snprintf(file, sizeof file, "%s.vtu", name);
-  return write_whole(recorder, file, &frame);
+  return fem_frames_write(&recorder->frames, &frame);
 }
 
 Status fem_recorder_continue(FemRecorder *recorder, JournalMark history, int frame_count) {
   if (!recorder->directory) return STATUS_OK;
   if (recorder->writes_history) TRY(fem_history_continue(&recorder->history, history));
-  recorder->frame_count = recorder->listed_count = recorder->writes_vtu ? frame_count : 0;
+  if (recorder->writes_vtu) fem_frames_continue(&recorder->frames, frame_count);
   return STATUS_OK;
-}
-
-static Status write_frame(FemRecorder *recorder) {
-  char name[NAME_SIZE];
-  snprintf(name, sizeof name, "frame_%05d", recorder->frame_count);
-  TRY(fem_forces_take_surface(&recorder->forces, recorder->state));
-  TRY(write_vtu(recorder, name));
-  TRY(fem_obstacle_frames_write(&recorder->obstacles, recorder->directory, recorder->frame_count,
-                                recorder->state->time));
-  recorder->frame_count++;
-  return STATUS_OK;
-}
-
-// The list follows from how many frames there are, so none of it is kept.
-static Status write_list(FemRecorder *recorder) {
-  FileWriter list;
-  char *path = file_join(recorder->directory, "frames.pvd");
-  if (!path) return status_no_memory("a file name");
-  Status status = fem_pvd_begin(&list, path);
-  memory_free(path);
-  TRY(status);
-  for (int frame = 0; frame < recorder->frame_count; frame++) {
-    char file[NAME_SIZE];
-    double time = fem_scene_frame_time(recorder->system->model->scene, frame);
-    snprintf(file, sizeof file, "frame_%05d.%s", frame, recorder->writes_pieces ? "pvtu" : "vtu");
-    fem_pvd_add(&list, time, 0, fem_obstacle_frames_any(&recorder->obstacles) ? "bodies" : NULL, file);
-    fem_obstacle_frames_list(&recorder->obstacles, &list, frame, time);
-  }
-  TRY(fem_pvd_commit(&list));
-  recorder->listed_count = recorder->frame_count;
-  recorder->listed_at_s = clock_wall_s();
-  return STATUS_OK;
-}
-
-// To write the whole list after every frame would take time that grows with the square of their number.
-static bool is_list_due(const FemRecorder *recorder) {
-  static const double PERIOD_S = 1;
-  enum { SHORT = 1000 };
-  return recorder->frame_count <= SHORT || clock_wall_s() - recorder->listed_at_s >= PERIOD_S;
 }
 
 static double *append_centres(const FemModel *model, const double *positions, double *row) {
@@ -508,7 +447,6 @@ Status fem_recorder_write(FemRecorder *recorder, const FemColumnSource *source) 
   if (!recorder->directory) return STATUS_OK;
   recorder->state = source->state;
   if (recorder->writes_vtu) TRY(write_frame(recorder));
-  if (recorder->writes_vtu && is_list_due(recorder)) TRY(write_list(recorder));
   bool is_first = recorder->history.file.end.size == 0;
   if (recorder->writes_history == FEM_HISTORY_FRAMES || (recorder->writes_history && is_first)) {
     TRY(fem_probes_measure(&recorder->probes, source->state, &recorder->forces));
@@ -519,6 +457,17 @@ Status fem_recorder_write(FemRecorder *recorder, const FemColumnSource *source) 
   return STATUS_OK;
 }
 
+static Status end_writing(FemRecorder *recorder, Status (*end)(FemFrames *frames)) {
+  double began = clock_wall_s();
+  Status status = end(&recorder->frames);
+  recorder->seconds += clock_wall_s() - began;
+  return status;
+}
+
+Status fem_recorder_wait(FemRecorder *recorder) {
+  return end_writing(recorder, fem_frames_wait);
+}
+
 Status fem_recorder_finish(FemRecorder *recorder) {
-  return recorder->listed_count < recorder->frame_count ? write_list(recorder) : STATUS_OK;
+  return end_writing(recorder, fem_frames_finish);
 }

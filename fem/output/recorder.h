@@ -9,27 +9,22 @@
 #include "fem/measure/ledger.h"
 #include "fem/output/columns.h"
 #include "fem/output/forces.h"
+#include "fem/output/frames.h"
 #include "fem/output/history.h"
 #include "fem/output/probes.h"
 #include "fem/output/trouble.h"
-#include "fem/output/vtk/obstacle_frames.h"
-#include "fem/output/vtk/pieces.h"
 #include "fem/time/audit.h"
 
 typedef struct FemRecorder {
   FemSystem *system; // borrowed
   char *directory;   // owned; NULL: nothing is written
-  bool writes_vtu, writes_pieces;
-  FemVtuPart part; // what this rank writes of frames in pieces
+  bool writes_vtu;
+  FemFrames frames; // where they are written
   FemHistoryRows writes_history;
   FemHistory history;
   double *row; // one line of the history
   int row_capacity;
-  int frame_count;             // frames that are written
-  int listed_count;            // of these in frames.pvd
-  double listed_at_s;          // wall clock when it was written
-  FemObstacleFrames obstacles; // those without a mesh, beside the frames
-  FemForces forces;            // of the state that was measured last
+  FemForces forces; // of the state that was measured last
   FemLedger ledger;
   FemProbes probes;
   double (*moments)[3];    // scratch: of the interfaces about the origin [N m]; NULL: no history
@@ -68,7 +63,8 @@ void fem_recorder_accept_step(FemRecorder *recorder);
 // they had passed through it.
 void fem_recorder_find_turned(const FemRecorder *recorder, FemTroubleState *state);
 
-// Writes one frame.
+// Writes one frame, or begins to (frames.h): then a failure of it is that of the next call of one of these
+// three.
 Status fem_recorder_write(FemRecorder *recorder, const FemColumnSource *source);
 
 // A row of a history of steps: taken at the state that was measured last, while it is there, and appended
@@ -76,8 +72,10 @@ Status fem_recorder_write(FemRecorder *recorder, const FemColumnSource *source);
 Status fem_recorder_take_step(FemRecorder *recorder, const FemColumnSource *source);
 Status fem_recorder_append_step(FemRecorder *recorder);
 
-// Writes the list of frames if it lacks some: at the end, since in between long lists are written at most
-// once a second.
+// Until what was written is on the disk.
+Status fem_recorder_wait(FemRecorder *recorder);
+
+// At the end: waits, and completes the list of frames.
 Status fem_recorder_finish(FemRecorder *recorder);
 
 #endif

@@ -253,6 +253,7 @@ static Status keep_account(FemRunState *run) {
 
 static Status collect(FemRunState *run, Status status) {
   FemRunResult *result = run->result;
+  Status written = run->recorder.system ? fem_recorder_finish(&run->recorder) : STATUS_OK;
   end_part(run);
   result->energy.audit = run->audit;
   result->end_time = run->time;
@@ -263,9 +264,9 @@ static Status collect(FemRunState *run, Status status) {
   result->cost.phases.solve = result->matrix.solver.solve_s;
   result->cost.phases.total = result->cost.wall_s;
   if (!status) fem_run_spread_collect(run, result); // else others may be elsewhere
-  if (!run->recorder.system) return STATUS_OK;
-  if (run->system.model) TRY(keep_account(run)); // else a new part could not be begun
-  return fem_recorder_finish(&run->recorder);
+  // Without a system, a new part could not be begun.
+  if (run->recorder.system && run->system.model) TRY(keep_account(run));
+  return written;
 }
 
 // The counts to go on from.

@@ -78,6 +78,7 @@ Status fem_run_session_advance(FemRunSession *session, double time) {
     status = fem_run_loop_turn(run);
   if (!status && run->time >= reached)
     run->time = fmax(run->time, time); // the same time, so a loop to it ends
+  if (!status) status = fem_recorder_wait(&run->recorder);
   if (!status) status = look(run);
   return status ? fail(session, status) : STATUS_OK;
 }

@@ -94,9 +94,11 @@ static Status keep_ledger(const FemRunState *run, FemCheckpoint *next) {
   return fem_rest_save(run->rest, &next->rest, &next->rest_count);
 }
 
-// The former checkpoint stands until the next one is whole: a run that fails on the way leaves that one.
+// The former checkpoint stands until the next one is whole, and all frames before it: a run that fails on the
+// way leaves that one.
 Status fem_run_checkpoint_take(FemRunState *run, double force_scale, double driven_work) {
   FemCheckpoint next;
+  TRY(fem_recorder_wait(&run->recorder));
   fem_system_scatter(&run->system, run->time, run->u, run->v, &run->trial);
   TRY(fem_restart_collect(&next, &run->system, &run->trial, run->u, run->v, run->result));
   Status status = keep_ledger(run, &next);
