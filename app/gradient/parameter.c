@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -68,7 +69,7 @@ static const Key scene_keys[] = {
 
 const char app_gradient_keys[] =
     "bodies.NAME.material.{young, poisson, density, mooney, ogden.exponents[K], ogden.shares[K], "
-    "fibre.modulus}; "
+    "fibre.modulus}, bodies.NAME.materials[N].{…} the same; "
     "bodies.NAME.loads[N].{force[K], body_force[K], traction[K], pressure}; "
     "bodies.NAME.driven[N].{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}; "
     "bodies.NAME.{place.translate[K], velocity[K]}; "
@@ -105,6 +106,21 @@ static bool find_key(const char *text, const Key *keys, size_t count, FemParamet
     return true;
   }
   return false;
+}
+
+// The keys of a part are those of a material. `item`: of the body's materials; −1: its own.
+static bool find_body_key(const char *text, FemParameter *parameter, int *item) {
+  static const char parts[] = "materials[";
+  const size_t count = sizeof body_keys / sizeof *body_keys;
+  char key[64], *end;
+  *item = -1;
+  if (strncmp(text, parts, strlen(parts)) != 0) return find_key(text, body_keys, count, parameter);
+  text += strlen(parts);
+  long number = isdigit((unsigned char)*text) ? strtol(text, &end, 10) : -1;
+  if (number < 0 || *end != ']') return false;
+  *item = number < INT_MAX ? (int)number : INT_MAX;
+  return snprintf(key, sizeof key, "material%s", end + 1) < (int)sizeof key &&
+         find_key(key, body_keys, count, parameter);
 }
 
 static bool is_in_range(FemParameter *parameter) {
@@ -152,32 +168,50 @@ static Status find_owner(const FemSceneDef *scene, const char *key, const char *
   return app_gradient_find_name(scene, name, (size_t)(dot - name), begin, end, number);
 }
 
-static Status read_owned(const FemSceneDef *scene, const char *key, FemParameter *parameter) {
+static bool is_of_part(const FemParameter *parameter) {
+  return fem_parameter_is_of_material(parameter) || parameter->kind == FEM_PARAMETER_DENSITY;
+}
+
+static Status find_part(const FemModel *model, int item, FemParameter *parameter) {
+  const FemModelBody *body = &model->bodies[parameter->body];
+  for (int p = body->part_begin; p < body->part_end; p++)
+    if (model->parts[p].item == item) parameter->part = p;
+  if (parameter->part >= 0) return STATUS_OK;
+  if (item < 0)
+    return status_fail(STATUS_INPUT, "body '%s': no tetrahedron is of `material`, all are of `materials`",
+                       body->name);
+  return status_fail(STATUS_INPUT, "body '%s' has %d materials, no materials[%d]", body->name,
+                     model->scene->bodies[parameter->body].part_count, item);
+}
+
+static Status read_owned(const FemModel *model, const char *key, FemParameter *parameter) {
   static const char bodies[] = "bodies.", obstacles[] = "obstacles.";
-  const size_t of_body = sizeof body_keys / sizeof *body_keys;
+  const FemSceneDef *scene = model->scene;
   const size_t of_obstacle = sizeof obstacle_keys / sizeof *obstacle_keys;
   int all = scene->body_count + scene->obstacle_count;
   const char *rest = NULL;
   bool is_known;
+  int item = -1;
   if (strncmp(key, bodies, strlen(bodies)) == 0) {
     TRY(find_owner(scene, key, bodies, 0, scene->body_count, &parameter->body, &rest));
-    is_known = find_key(rest, body_keys, of_body, parameter);
+    is_known = find_body_key(rest, parameter, &item);
   } else {
     TRY(find_owner(scene, key, obstacles, scene->body_count, all, &parameter->obstacle, &rest));
     parameter->obstacle -= scene->body_count;
     is_known = find_key(rest, obstacle_keys, of_obstacle, parameter);
   }
   if (!is_known || !is_in_range(parameter)) return fail_parameter(key);
+  if (is_of_part(parameter)) TRY(find_part(model, item, parameter));
   if (is_of_kind(scene, rest, parameter)) return STATUS_OK;
   return status_fail(STATUS_INPUT, "the scene does not have this key");
 }
 
 Status app_gradient_read_parameter(const FemModel *model, const char *key, FemParameter *parameter) {
   static const char *const lists[] = {"bodies.", "obstacles."};
-  *parameter = (FemParameter){.body = -1, .obstacle = -1};
+  *parameter = (FemParameter){.body = -1, .part = -1, .obstacle = -1};
   for (int k = 0; k < 2; k++)
     if (strncmp(key, lists[k], strlen(lists[k])) == 0)
-      return status_prefix(read_owned(model->scene, key, parameter), "%s", key);
+      return status_prefix(read_owned(model, key, parameter), "%s", key);
   if (!find_key(key, scene_keys, sizeof scene_keys / sizeof *scene_keys, parameter))
     return fail_parameter(key);
   return is_in_range(parameter) ? STATUS_OK : fail_parameter(key);

@@ -80,6 +80,43 @@ static Status fail_body(const char *folder, const char *body, const char *what) 
   return status_fail(STATUS_INPUT, "start: %s: %s '%s'", folder, what, body);
 }
 
+// Index −1: `material`.
+static bool is_plastic(const Record *body, int index) {
+  const Record *material =
+      index < 0 ? record_find(body, "material") : record_at(record_find(body, "materials"), index);
+  return record_find(material, "plasticity") != NULL;
+}
+
+static bool selects_alike(const Record *a, const Record *b) {
+  static const char *const keys[] = {"group", "box", "halfspace", "radius"};
+  RecordDifference difference;
+  for (int k = 0; k < 4; k++) {
+    const Record *one = record_find(a, keys[k]), *other = record_find(b, keys[k]);
+    if (!one != !other || (one && record_differ(one, other, &difference))) return false;
+  }
+  return true;
+}
+
+// What has yielded has a history for each of its points.
+static Status check_materials(const char *folder, const Record *was, const Record *is) {
+  const Record *parts_was = record_find(was, "materials"), *parts_is = record_find(is, "materials");
+  const char *name = record_find_text(is, "name");
+  int count = record_count(parts_is);
+  bool any = false;
+  for (int i = -1; i < count; i++) any = any || is_plastic(is, i);
+  for (int i = -1; i < record_count(parts_was); i++) any = any || is_plastic(was, i);
+  if (!any) return STATUS_OK;
+  if (count != record_count(parts_was))
+    return fail_body(folder, name, "`plasticity` and another number of `materials` than there, of body");
+  for (int i = -1; i < count; i++)
+    if (is_plastic(was, i) != is_plastic(is, i))
+      return fail_body(folder, name, "`plasticity` in one of the two runs only, of body");
+  for (int i = 0; i < count; i++)
+    if (!selects_alike(record_at(parts_was, i), record_at(parts_is, i)))
+      return fail_body(folder, name, "`plasticity` and other parts in `materials` than there, of body");
+  return STATUS_OK;
+}
+
 static Status check_body(const char *folder, const Record *was, const Record *is, const Record *shapes_was,
                          const Record *shapes_is) {
   const char *name = record_find_text(is, "name"), *other = record_find_text(was, "name");
@@ -91,10 +128,7 @@ static Status check_body(const char *folder, const Record *was, const Record *is
                        folder, other ? other : "?", name);
   if (record_differ(record_find(shapes_was, name), record_find(shapes_is, name), &d))
     return fail_body(folder, name, "another mesh, `place` or order of elements than there: of body");
-  if (!record_find(record_find(was, "material"), "plasticity") !=
-      !record_find(record_find(is, "material"), "plasticity"))
-    return fail_body(folder, name, "`plasticity` in one of the two runs only, of body");
-  return STATUS_OK;
+  return check_materials(folder, was, is);
 }
 
 static Status check_bodies(const char *folder, const Record *origin, const Record *scene,

@@ -24,7 +24,7 @@ static void judge_nothing(const AppStressRun *run, AppStressRow *row) {
 // The largest covered volume, over the upper body's: what passes through is covered whole on its way.
 static void ask_no_passage(const AppStressRun *run, AppStressRow *row) {
   const FemModelBody *upper = &run->model.bodies[1];
-  double volume = upper->mass / upper->material.density;
+  double volume = upper->mass / run->model.parts[upper->part_begin].material.density;
   app_stress_ask_most(row, "share of the body inside", run->result.contact.overlap_volume_max / volume, 0.02);
 }
 
@@ -33,7 +33,7 @@ static void judge_sharp(const AppStressRun *run, AppStressRow *row) {
   ask_no_passage(run, row);
   double width = app_stress_run_highest(run, 0, 1, 0) - app_stress_run_lowest(run, 0, 1, 0);
   double depth = app_stress_run_highest(run, 0, 1, 1) - app_stress_run_lowest(run, 0, 1, 1);
-  double young = run->model.bodies[1].material.young;
+  double young = run->model.parts[1].material.young;
   app_stress_ask_most(row, "force over E A", run->result.contact.force_max / (young * width * depth), 1);
   app_stress_ask_most(row, "asymmetry in x", app_stress_run_asymmetry(run, 1, 0, 0), 1e-3);
   app_stress_ask_most(row, "asymmetry in y", app_stress_run_asymmetry(run, 1, 1, 0), 1e-3);
@@ -228,8 +228,8 @@ static Status run_inverted(AppStressRun *run) {
 
 // Timoshenko under its weight: q L⁴/(8 E I) + q L²/(2 k G A), k = 5/6.
 static void judge_beam(const AppStressRun *run, AppStressRow *row) {
-  double L = 0.5, h = 0.1, q = 1000 * 1.0 * h * h, young = run->model.bodies[0].material.young, tip = 0;
-  double shear = young / (2 * (1 + run->model.bodies[0].material.poisson));
+  double L = 0.5, h = 0.1, q = 1000 * 1.0 * h * h, young = run->model.parts[0].material.young, tip = 0;
+  double shear = young / (2 * (1 + run->model.parts[0].material.poisson));
   double theory = q * pow(L, 4) / (8 * young * pow(h, 4) / 12) + q * L * L / (2 * (5.0 / 6) * shear * h * h);
   int count = 0;
   for (int a = 0; a < run->model.vertex_count; a++) {

@@ -8,6 +8,7 @@
 #include "base/vec3.h"
 #include "fem/effect/gravity.h"
 #include "fem/gradient/difference.h"
+#include "fem/model/parts.h"
 #include "fem/scene/drive.h"
 
 static size_t values_of(const FemTangent *tangent) {
@@ -23,8 +24,9 @@ Status fem_change_create(FemChange *change, const FemTangent *tangent) {
   change->contact = memory_zeroed(values, sizeof(double));
   change->rates = memory_zeroed((size_t)tangent->interface_count, sizeof(double));
   change->slips = memory_zeroed((size_t)tangent->interface_count, sizeof(double));
-  bool fits =
-      change->force && change->motion && change->product && change->contact && change->rates && change->slips;
+  change->masses = memory_zeroed(values / 3, sizeof(double));
+  bool fits = change->force && change->motion && change->product && change->contact && change->rates &&
+              change->slips && change->masses;
   return fits ? STATUS_OK : status_no_memory("what a parameter changes");
 }
 
@@ -33,6 +35,7 @@ void fem_change_destroy(FemChange *change) {
   memory_free(change->motion);
   memory_free(change->rates);
   memory_free(change->slips);
+  memory_free(change->masses);
   memory_free(change->product);
   memory_free(change->contact);
   *change = (FemChange){0};
@@ -51,25 +54,18 @@ static void clear(FemChange *change, const FemTangent *tangent) {
 
 // ---- Weight.
 
-// Of vertices from `begin` to before `end`, whose weight changes by m `by`; in a static scene the energy is
-// that of rest and of what has grown (fem/effect/gravity.c).
-static void add_weight(FemChange *change, const FemTangent *tangent, const double by[3], int begin, int end) {
+// Of vertices whose weight changes by m `by`; in a static scene the energy is that of rest and of what has
+// grown (fem/effect/gravity.c).
+static void add_weight(FemChange *change, const FemTangent *tangent, const double by[3],
+                       const double *masses) {
   const FemModel *model = tangent->system->model;
   double share = fem_gravity_share(model, tangent->state->time);
-  for (int a = begin; a < end; a++)
+  for (int a = 0; a < model->vertex_count; a++)
     for (size_t c = 0, dof = 3 * (size_t)a; c < 3; c++, dof++) {
       double rest = model->rest[dof], way = tangent->state->positions[dof] - rest;
-      change->force[dof] += share * model->mass[a] * by[c];
-      change->gravity -= model->mass[a] * by[c] * (rest + share * way);
+      change->force[dof] += share * masses[a] * by[c];
+      change->gravity -= masses[a] * by[c] * (rest + share * way);
     }
-}
-
-static void weigh_body(FemChange *change, const FemTangent *tangent, int b) {
-  const FemModel *model = tangent->system->model;
-  const FemModelBody *body = &model->bodies[b];
-  double by[3];
-  for (int c = 0; c < 3; c++) by[c] = model->scene->gravity[c] / body->material.density;
-  add_weight(change, tangent, by, body->vertex_begin, body->vertex_end);
 }
 
 // ---- Loads.
@@ -266,11 +262,11 @@ static void rub(FemChange *change, const FemTangent *tangent, const FemParameter
   }
 }
 
-static Status rate_choice(FemChange *change, FemVaried *varied, const FemTangent *tangent, int body,
+static Status rate_choice(FemChange *change, FemVaried *varied, const FemTangent *tangent, int part,
                           FemParameterKind constant) {
   double *rates;
   int parties;
-  Status status = fem_varied_derive_stiffness(varied, body, constant, &rates, &parties);
+  Status status = fem_varied_derive_stiffness(varied, part, constant, &rates, &parties);
   for (int i = 0; i < tangent->interface_count && !status; i++) {
     const ContactInterfaceDef *interface = fem_tangent_interface(tangent, i);
     if (!interface->law) change->rates[i] = rates[interface->a * parties + interface->b];
@@ -283,10 +279,10 @@ static Status change_material(FemChange *change, FemVaried *varied, const FemTan
                               const FemParameter *parameter, bool follows) {
   FemParameterKind constant = parameter->kind;
   bool is_elastic = constant == FEM_PARAMETER_YOUNG || constant == FEM_PARAMETER_POISSON;
-  TRY(fem_varied_derive(varied, parameter->body, constant, parameter->row, tangent->state, change->force,
+  TRY(fem_varied_derive(varied, parameter->part, constant, parameter->row, tangent->state, change->force,
                         &change->elastic));
   if (!follows || !is_elastic || !tangent->contact) return STATUS_OK;
-  return rate_choice(change, varied, tangent, parameter->body, constant);
+  return rate_choice(change, varied, tangent, parameter->part, constant);
 }
 
 // ---- What follows for contact.
@@ -331,11 +327,12 @@ static Status find(FemChange *change, FemVaried *varied, const FemTangent *tange
   if (fem_parameter_is_of_motion(parameter)) return move(change, tangent, parameter);
   switch (parameter->kind) {
   case FEM_PARAMETER_DENSITY:
-    weigh_body(change, tangent, parameter->body);
+    fem_model_parts_spread(tangent->system->model, parameter->part, change->masses);
+    add_weight(change, tangent, tangent->system->model->scene->gravity, change->masses);
     break;
   case FEM_PARAMETER_GRAVITY:
     by[parameter->component] = 1;
-    add_weight(change, tangent, by, 0, tangent->system->model->vertex_count);
+    add_weight(change, tangent, by, tangent->system->model->mass);
     break;
   case FEM_PARAMETER_LOAD:
     return press(change, tangent, parameter);

@@ -16,6 +16,7 @@ typedef struct FemChange {
   double *motion; // of prescribed coordinates, else 0                     (vertex_count, 3)
   double *rates;  // ∂ ln κ/∂p of each interface                           (interface_count)
   double *slips;  // ∂μ/∂p of each interface                               (interface_count)
+  double *masses; // ∂m/∂p of a density, else not set                      (vertex_count)
   int party;      // the obstacle that moves; −1: none
   double shift[3], spin[3];
   int placed;                // the body that stands elsewhere; −1: none

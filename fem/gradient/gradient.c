@@ -221,11 +221,12 @@ static Status check_contact(const FemSceneDef *scene) {
 }
 
 static Status check_body(const FemBodyDef *body) {
-  if (body->material.yield_stress > 0)
-    return status_fail(STATUS_INPUT,
-                       "body '%s' yields: plasticity remembers its history, which gradients do not go back "
-                       "through",
-                       body->name);
+  for (int i = 0; i <= body->part_count; i++)
+    if (fem_scene_material(body, i)->yield_stress > 0)
+      return status_fail(STATUS_INPUT,
+                         "body '%s' yields: plasticity remembers its history, which gradients do not go back "
+                         "through",
+                         body->name);
   for (int i = 0; i < body->load_count; i++)
     if (body->loads[i].kind == FEM_LOAD_TORQUE ||
         (body->loads[i].kind == FEM_LOAD_PRESSURE && !body->loads[i].is_dead))

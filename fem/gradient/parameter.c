@@ -139,21 +139,21 @@ static Status check_motion(const FemModel *model, const FemParameter *parameter)
 }
 
 // There is no derivative by ν where elements begin to keep a part of λ only.
-static bool is_at_largest_ratio(const FemModelBody *body) {
+static bool is_at_largest_ratio(const FemModelBody *body, const FemMaterial *material) {
   static const double NEAR = 1e-9;
-  FemLame lame = fem_material_lame(&body->material);
+  FemLame lame = fem_material_lame(material);
   double most = fem_model_largest_ratio(body) * lame.mu;
   return isfinite(most) && fabs(lame.lambda - most) <= NEAR * most;
 }
 
 static Status check_material(const FemModel *model, const FemParameter *parameter) {
   const FemModelBody *body = &model->bodies[parameter->body];
-  const FemMaterial *material = &body->material;
+  const FemMaterial *material = &model->parts[parameter->part].material;
   if (parameter->kind == FEM_PARAMETER_FIBRE && !(material->fibre_stiffness > 0))
     return status_fail(STATUS_INPUT, "body '%s' has no fibres", body->name);
   if (parameter->kind == FEM_PARAMETER_OGDEN_SHARE && material->exponents[parameter->row] == 0)
     return status_fail(STATUS_INPUT, "body '%s': the exponent of this share is 0", body->name);
-  if (parameter->kind == FEM_PARAMETER_POISSON && is_at_largest_ratio(body))
+  if (parameter->kind == FEM_PARAMETER_POISSON && is_at_largest_ratio(body, material))
     return status_fail(
         STATUS_INPUT,
         "body '%s': there is no derivative by ν just here, where these elements begin to share "
@@ -195,7 +195,7 @@ static const char *idle_stiffness(const FemModel *model, const FemParameter *par
 }
 
 static const char *idle_of_law(const FemModel *model, const FemParameter *parameter, FemMaterialLaw law) {
-  if (model->bodies[parameter->body].material.law == law) return NULL;
+  if (model->parts[parameter->part].material.law == law) return NULL;
   return law == FEM_MATERIAL_OGDEN ? "the body's law is not ogden" : "the body's law is not mooney_rivlin";
 }
 
@@ -216,7 +216,7 @@ const char *fem_parameter_idle(const FemModel *model, const FemParameter *parame
   case FEM_PARAMETER_MOONEY:
     return idle_of_law(model, parameter, FEM_MATERIAL_MOONEY_RIVLIN);
   case FEM_PARAMETER_OGDEN_EXPONENT:
-    if (model->bodies[parameter->body].material.shares[parameter->row] == 0) return "the term's share is 0";
+    if (model->parts[parameter->part].material.shares[parameter->row] == 0) return "the term's share is 0";
     return idle_of_law(model, parameter, FEM_MATERIAL_OGDEN);
   case FEM_PARAMETER_OGDEN_SHARE:
     return idle_of_law(model, parameter, FEM_MATERIAL_OGDEN);
@@ -299,7 +299,7 @@ double fem_parameter_value(const FemModel *model, const FemParameter *parameter)
   case FEM_PARAMETER_MOTION_ALONE:
     return NAN;
   default:
-    return value_of_material(&model->bodies[parameter->body].material, parameter);
+    return value_of_material(&model->parts[parameter->part].material, parameter);
   }
 }
 

@@ -6,13 +6,13 @@
 #include "fem/model/model.h"
 
 typedef enum FemParameterKind {
-  FEM_PARAMETER_YOUNG,             // E of a body at fixed ν [Pa]
-  FEM_PARAMETER_POISSON,           // ν of a body at fixed E
+  FEM_PARAMETER_YOUNG,             // E of a part at fixed ν [Pa]
+  FEM_PARAMETER_POISSON,           // ν of a part at fixed E
   FEM_PARAMETER_MOONEY,            // of mooney_rivlin: the second invariant's share
   FEM_PARAMETER_OGDEN_EXPONENT,    // of ogden, α of a term (`row`)
   FEM_PARAMETER_OGDEN_SHARE,       // of ogden, the share of a term (`row`) before it is normalised
-  FEM_PARAMETER_FIBRE,             // modulus of a body's fibres [Pa]
-  FEM_PARAMETER_DENSITY,           // of a body [kg/m³]
+  FEM_PARAMETER_FIBRE,             // modulus of a part's fibres [Pa]
+  FEM_PARAMETER_DENSITY,           // of a part [kg/m³]
   FEM_PARAMETER_GRAVITY,           // a component [m/s²]
   FEM_PARAMETER_LOAD,              // loads[item] of a body: a component of its vector, or its pressure
   FEM_PARAMETER_VELOCITY,          // a component of a prescribed motion's velocity [m/s]
@@ -32,12 +32,13 @@ typedef enum FemParameterKind {
 typedef struct FemParameter {
   FemParameterKind kind;
   int body;     // of the scene's bodies; −1: none
+  int part;     // of the model's, where it is of a material; −1: none
   int obstacle; // of the scene's obstacles; −1: none
   int item;     // of the body's loads or driven entries, of the contact's pairs
   int row, component;
 } FemParameter;
 
-bool fem_parameter_is_of_material(const FemParameter *parameter); // acts by the elastic forces of its body
+bool fem_parameter_is_of_material(const FemParameter *parameter); // acts by the elastic forces of its part
 bool fem_parameter_is_of_motion(const FemParameter *parameter);   // of a prescribed motion
 
 // STATUS_INPUT: the scene does not give it, or no derivative is known; the message says why.

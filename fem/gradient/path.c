@@ -189,21 +189,19 @@ static Status solve_step(Sweep *sweep, int g, double *largest) {
 
 // ---- What a step gives to the derivatives.
 
-// −∂M/∂p v̇ of a density: what the body's vertices resist with.
-static void resist(const Sweep *sweep, const FemParameter *parameter, double *force) {
+// −∂M/∂p v̇ of a density: what the vertices resist with.
+static void resist(const Sweep *sweep, const FemParameter *parameter, FemChange *change) {
   const FemReplay *replay = &sweep->replay;
   const FemModel *model = replay->system.model;
   if (parameter->kind != FEM_PARAMETER_DENSITY || model->scene->is_static || sweep->step == 0) return;
-  const FemModelBody *body = &model->bodies[parameter->body];
   int k = sweep->step;
   FemReplayFormula formula = fem_replay_formula(replay, k);
   size_t n = (size_t)replay->n;
   const double *v = replay->v + n * (size_t)k;
   for (size_t i = 0; i < n; i++) {
     int dof = replay->system.numbering.dof_of_unknown[i];
-    if (dof / 3 < body->vertex_begin || dof / 3 >= body->vertex_end) continue;
     double rate = formula.c * v[i] + formula.near * v[i - n] + (k > 1 ? formula.far * v[i - 2 * n] : 0);
-    force[dof] -= fem_replay_mass(replay, (int)i) / body->material.density * rate;
+    change->force[dof] -= change->masses[dof / 3] * rate;
   }
 }
 
@@ -224,7 +222,7 @@ static Status add_step(Sweep *sweep, FemChange *change, int p, FemGradient *grad
   const FemGradientDef *def = sweep->def;
   const double *factors = sweep->factors;
   TRY(fem_change_find(change, &sweep->varied, &sweep->tangent, &def->parameters[p], def->follows_choice));
-  resist(sweep, &def->parameters[p], change->force);
+  resist(sweep, &def->parameters[p], change);
   for (int g = 0; g < def->goal_count; g++) {
     Behind *behind = &sweep->behind[g];
     double sum = 0;
@@ -348,13 +346,13 @@ static Status replay_and_return(Sweep *sweep, FemGradient *gradient) {
 
 static Status check_damping(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
-  for (int b = 0; b < scene->body_count; b++) {
-    const FemMaterial *material = &model->bodies[b].material;
-    if (model->bodies[b].damping > 0 || material->viscosity > 0 || material->bulk_viscosity > 0)
+  for (int p = 0; p < model->part_count; p++) {
+    const FemModelPart *part = &model->parts[p];
+    if (part->damping > 0 || part->material.viscosity > 0 || part->material.bulk_viscosity > 0)
       return status_fail(STATUS_INPUT,
                          "body '%s' is damped: the matrix lacks what damping changes by positions, so that a "
                          "motion has no exact gradient",
-                         model->bodies[b].name);
+                         model->bodies[part->body].name);
   }
   if (scene->contact.is_on && scene->contact.viscosity > 0)
     return status_fail(STATUS_INPUT, "contact.viscosity: its matrix is not exact by positions");

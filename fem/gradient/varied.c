@@ -15,9 +15,9 @@ static Status create_effect(FemEffect *effect, const FemEffectOps *ops, const Fe
 
 Status fem_varied_create(FemVaried *varied, const FemModel *model) {
   *varied = (FemVaried){.model = *model};
-  varied->model.bodies = memory_copy(model->bodies, (size_t)model->body_count, sizeof *model->bodies);
+  varied->model.parts = memory_copy(model->parts, (size_t)model->part_count, sizeof *model->parts);
   varied->force = memory_zeroed(3 * (size_t)model->vertex_count, sizeof *varied->force);
-  if (!varied->model.bodies || !varied->force) return status_no_memory("other materials");
+  if (!varied->model.parts || !varied->force) return status_no_memory("other materials");
   TRY(create_effect(&varied->elasticity, &fem_effect_elasticity, &varied->model));
   return create_effect(&varied->volume, &fem_effect_volume, &varied->model);
 }
@@ -26,7 +26,7 @@ void fem_varied_destroy(FemVaried *varied) {
   FemEffect *effects[] = {&varied->elasticity, &varied->volume};
   for (int i = 0; i < 2; i++)
     if (effects[i]->self) effects[i]->ops->destroy(effects[i]->self);
-  memory_free(varied->model.bodies);
+  memory_free(varied->model.parts);
   memory_free(varied->force);
   *varied = (FemVaried){0};
 }
@@ -45,10 +45,10 @@ static FemLame lame_along(FemLame from, double step, FemLame rate) {
 }
 
 // λ, μ and what elements keep of λ, along the tangent in E or ν.
-static void vary_lame(FemModelBody *to, const FemModelBody *from, FemParameterKind constant, double step) {
+static void vary_lame(FemModelPart *to, const FemModelPart *from, double ratio, FemParameterKind constant,
+                      double step) {
   FemLame rate = lame_rate(&from->material, constant), local_rate = rate;
   FemLame lame = fem_material_lame(&from->material), local = fem_material_lame(&from->local);
-  double ratio = fem_model_largest_ratio(from);
   if (lame.lambda > ratio * lame.mu) local_rate.lambda = ratio * rate.mu;
   to->material = fem_material_with_lame(&from->material, lame_along(lame, step, rate));
   to->local = fem_material_with_lame(&from->local, lame_along(local, step, local_rate));
@@ -61,13 +61,14 @@ static void vary_share(FemMaterial *to, const FemMaterial *from, int place, doub
   for (int p = 0; p < 3; p++) to->shares[p] = from->shares[p] + step * ((p == place) - from->shares[p] / sum);
 }
 
-static void vary(FemModelBody *to, const FemModelBody *from, FemParameterKind constant, int place,
-                 double step) {
+// `ratio`: fem_model_largest_ratio of the body.
+static void vary(FemModelPart *to, const FemModelPart *from, double ratio, FemParameterKind constant,
+                 int place, double step) {
   *to = *from;
   switch (constant) {
   case FEM_PARAMETER_YOUNG:
   case FEM_PARAMETER_POISSON:
-    vary_lame(to, from, constant, step);
+    vary_lame(to, from, ratio, constant, step);
     return;
   case FEM_PARAMETER_MOONEY:
     to->local.mooney += step;
@@ -120,14 +121,15 @@ static Status add_elastic(FemVaried *varied, const FemState *state, double weigh
   return STATUS_OK;
 }
 
-Status fem_varied_derive(FemVaried *varied, int body, FemParameterKind constant, int place,
+Status fem_varied_derive(FemVaried *varied, int part, FemParameterKind constant, int place,
                          const FemState *state, double *force, double *energy) {
-  FemModelBody *own = &varied->model.bodies[body];
-  const FemModelBody kept = *own;
+  FemModelPart *own = &varied->model.parts[part];
+  const FemModelPart kept = *own;
+  double ratio = fem_model_largest_ratio(&varied->model.bodies[own->body]);
   double step = step_of(&kept.material, constant, place);
   Status status = STATUS_OK;
   for (int k = 0; k < FEM_DIFFERENCE_POINTS && !status; k++) {
-    vary(own, &kept, constant, place, fem_difference[k].place * step);
+    vary(own, &kept, ratio, constant, place, fem_difference[k].place * step);
     status = add_elastic(varied, state, fem_difference[k].weight / step, force, energy);
   }
   *own = kept;
@@ -141,10 +143,10 @@ static Status add_choice(FemVaried *varied, double weight, double *rates, FemCom
   return STATUS_OK;
 }
 
-Status fem_varied_derive_stiffness(FemVaried *varied, int body, FemParameterKind constant, double **rates,
+Status fem_varied_derive_stiffness(FemVaried *varied, int part, FemParameterKind constant, double **rates,
                                    int *party_count) {
   static const double SHARE = 1e-3;
-  FemMaterial *material = &varied->model.bodies[body].material;
+  FemMaterial *material = &varied->model.parts[part].material;
   const FemMaterial kept = *material;
   bool is_young = constant == FEM_PARAMETER_YOUNG;
   double *value = is_young ? &material->young : &material->poisson, middle = *value;

@@ -12,7 +12,7 @@
 #include "fem/gradient/parameter.h"
 
 typedef struct FemVaried {
-  FemModel model;               // borrows all but `bodies`
+  FemModel model;               // borrows all but `parts`
   FemEffect elasticity, volume; // of that model; without `self`: the scene has none
   double *force;                // scratch                                  (vertex_count, 3)
 } FemVaried;
@@ -20,14 +20,14 @@ typedef struct FemVaried {
 Status fem_varied_create(FemVaried *varied, const FemModel *model);
 void fem_varied_destroy(FemVaried *varied); // also of a zeroed one
 
-// Adds the derivatives of the elastic forces [N] and energy [J] at a state by a constant of a body's
-// material (fem_parameter_is_of_material); `place`: which of ogden's three.
-Status fem_varied_derive(FemVaried *varied, int body, FemParameterKind constant, int place,
+// Adds the derivatives of the elastic forces [N] and energy [J] at a state by a constant of the
+// material of a part (fem_parameter_is_of_material); `place`: which of ogden's three.
+Status fem_varied_derive(FemVaried *varied, int part, FemParameterKind constant, int place,
                          const FemState *state, double *force, double *energy);
 
 // ∂ ln κ/∂p of each body with each party (body_count, party_count; owned by the caller), p = E or ν of a
-// body.
-Status fem_varied_derive_stiffness(FemVaried *varied, int body, FemParameterKind constant, double **rates,
+// part.
+Status fem_varied_derive_stiffness(FemVaried *varied, int part, FemParameterKind constant, double **rates,
                                    int *party_count);
 
 #endif

@@ -45,20 +45,19 @@ void fem_accuracy_destroy(FemAccuracy *accuracy) {
   *accuracy = (FemAccuracy){0};
 }
 
-static double energy_of_tet(const FemModel *model, const FemModelBody *body, int tet,
-                            const double *positions) {
+static double energy_of_tet(const FemModel *model, int tet, const double *positions) {
   double x[12];
   for (int v = 0; v < 4; v++) memcpy(x + 3 * v, positions + 3 * (size_t)model->tets[tet][v], 3 * sizeof *x);
   const FemElement element = fem_model_element(model, tet);
-  return fem_element_energy(&element, &body->local, x);
+  return fem_element_energy(&element, &model->parts[model->tet_part[tet]].local, x);
 }
 
-static double energy_of_quadratic(const FemModel *model, const FemModelBody *body, int e,
-                                  const double *positions) {
+static double energy_of_quadratic(const FemModel *model, int e, const double *positions) {
+  const FemModelPart *part = &model->parts[model->quadratic_part[e]];
   double x[30];
   for (int v = 0; v < 10; v++)
     memcpy(x + 3 * v, positions + 3 * (size_t)model->quadratic_nodes[e][v], 3 * sizeof *x);
-  return fem_quadratic_energy(&model->quadratics[e], (FemQuadraticLaw){&body->local, body->bulk}, x);
+  return fem_quadratic_energy(&model->quadratics[e], (FemQuadraticLaw){&part->local, part->bulk}, x);
 }
 
 // Of every body, scaled so that the sum is `elastic`: what the elements' own law leaves out is shared as the
@@ -71,10 +70,9 @@ static void share_energy(FemAccuracy *accuracy, const FemModel *model, const dou
     double energy = 0;
     if (body->quadratic_end > body->quadratic_begin)
       for (int e = body->quadratic_begin; e < body->quadratic_end; e++)
-        energy += energy_of_quadratic(model, body, e, positions);
+        energy += energy_of_quadratic(model, e, positions);
     else
-      for (int e = body->tet_begin; e < body->tet_end; e++)
-        energy += energy_of_tet(model, body, e, positions);
+      for (int e = body->tet_begin; e < body->tet_end; e++) energy += energy_of_tet(model, e, positions);
     accuracy->energies[b] = energy;
     sum += energy;
   }

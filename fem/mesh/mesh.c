@@ -9,10 +9,14 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 
+void fem_mesh_group_destroy(FemMeshGroup *group) {
+  memory_free(group->name), memory_free(group->vertices), memory_free(group->middles);
+  memory_free(group->tets);
+  *group = (FemMeshGroup){0};
+}
+
 void fem_mesh_destroy(FemMesh *mesh) {
-  for (int g = 0; g < mesh->group_count; g++)
-    memory_free(mesh->groups[g].name), memory_free(mesh->groups[g].vertices),
-        memory_free(mesh->groups[g].middles);
+  for (int g = 0; g < mesh->group_count; g++) fem_mesh_group_destroy(&mesh->groups[g]);
   memory_free(mesh->groups);
   memory_free(mesh->rest);
   memory_free(mesh->tets);
@@ -30,9 +34,11 @@ static bool copy_array(void *copy, const void *array, size_t count, size_t size)
 
 static bool copy_group(FemMeshGroup *copy, const FemMeshGroup *group) {
   copy->vertex_count = group->vertex_count, copy->middle_count = group->middle_count;
+  copy->tet_count = group->tet_count;
   return copy_array(&copy->name, group->name, strlen(group->name) + 1, 1) &&
          copy_array(&copy->vertices, group->vertices, (size_t)group->vertex_count, sizeof(int)) &&
-         copy_array(&copy->middles, group->middles, (size_t)group->middle_count, sizeof(int));
+         copy_array(&copy->middles, group->middles, (size_t)group->middle_count, sizeof(int)) &&
+         copy_array(&copy->tets, group->tets, (size_t)group->tet_count, sizeof(int));
 }
 
 static bool copy_groups(FemMesh *copy, const FemMesh *mesh) {

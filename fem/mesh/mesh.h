@@ -8,7 +8,7 @@
 
 #include "base/status.h"
 
-// A named set of vertices: a physical group of the mesh file.
+// A named set of vertices, and of tetrahedra where it has a volume: a physical group of the mesh file.
 typedef struct FemMeshGroup {
   char *name;    // owned
   int *vertices; // sorted, distinct, owned   (vertex_count)
@@ -16,6 +16,10 @@ typedef struct FemMeshGroup {
   // Of second-order files: the edges whose nodes belong to it too, by number, sorted, distinct, owned.
   int *middles; //                            (middle_count)
   int middle_count;
+  // The tetrahedra that the file puts into it, by number, sorted, distinct, owned; of a mesh made quadratic
+  // the quadratic ones. None where it is of surfaces, curves, points.
+  int *tets; //                               (tet_count)
+  int tet_count;
 } FemMeshGroup;
 
 typedef struct FemMesh {
@@ -93,6 +97,7 @@ Status fem_mesh_make_quadratic(FemMesh *mesh);
 void fem_mesh_make_linear(FemMesh *mesh);
 
 void fem_mesh_destroy(FemMesh *mesh);
+void fem_mesh_group_destroy(FemMeshGroup *group);
 
 // A mesh of its own with the same content. STATUS_MEMORY: the copy is zeroed.
 Status fem_mesh_copy(FemMesh *copy, const FemMesh *mesh);

@@ -201,6 +201,7 @@ static void renumber_group(FemMeshGroup *group, const int *new_index) {
     if (vertex >= 0) group->vertices[kept++] = vertex;
   }
   group->vertex_count = sort_distinct(group->vertices, kept);
+  group->tet_count = sort_distinct(group->tets, group->tet_count);
 }
 
 // Keeps the corners in their order, in place.
@@ -267,9 +268,7 @@ Status fem_mesh_validate(FemMesh *mesh, FemMeshSource *source, const char *origi
 }
 
 void fem_mesh_source_destroy(FemMeshSource *source) {
-  for (int g = 0; g < source->group_count; g++)
-    memory_free(source->groups[g].name), memory_free(source->groups[g].vertices),
-        memory_free(source->groups[g].middles);
+  for (int g = 0; g < source->group_count; g++) fem_mesh_group_destroy(&source->groups[g]);
   memory_free(source->groups);
   memory_free(source->positions), memory_free(source->tets), memory_free(source->middles);
   memory_free(source->vertex_tags), memory_free(source->tet_tags);

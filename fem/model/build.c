@@ -8,8 +8,15 @@
 #include "base/vec3.h"
 #include "fem/model/division.h"
 #include "fem/model/drivers.h"
+#include "fem/model/parts.h"
 #include "fem/scene/meshes.h"
 #include "fem/scene/select.h"
+
+static size_t count_materials(const FemSceneDef *scene) {
+  size_t count = (size_t)scene->body_count;
+  for (int b = 0; b < scene->body_count; b++) count += (size_t)scene->bodies[b].part_count;
+  return count;
+}
 
 static Status allocate(FemModel *model, const FemMesh *meshes, int mesh_count) {
   long long vertices = 0, tets = 0, quadratics = 0;
@@ -26,18 +33,20 @@ static Status allocate(FemModel *model, const FemMesh *meshes, int mesh_count) {
   model->quadratic_count = (int)quadratics;
   model->quadratics = memory_zeroed(q, sizeof *model->quadratics);
   model->quadratic_nodes = memory_zeroed(q, sizeof *model->quadratic_nodes);
-  model->quadratic_body = memory_zeroed(q, sizeof *model->quadratic_body);
+  model->quadratic_part = memory_zeroed(q, sizeof *model->quadratic_part);
   model->rest = memory_zeroed(3 * v, sizeof *model->rest);
   model->tets = memory_zeroed(t, sizeof *model->tets);
   model->tet_body = memory_zeroed(t, sizeof *model->tet_body);
+  model->tet_part = memory_zeroed(t, sizeof *model->tet_part);
   model->volumes = memory_zeroed(t, sizeof *model->volumes);
   model->bodies = memory_zeroed((size_t)mesh_count, sizeof *model->bodies);
+  model->parts = memory_zeroed(count_materials(model->scene), sizeof *model->parts);
   model->mass = memory_zeroed(v, sizeof *model->mass);
   model->initial_velocity = memory_zeroed(3 * v, sizeof *model->initial_velocity);
   model->is_prescribed = memory_zeroed(3 * v, sizeof *model->is_prescribed);
-  bool ok = model->quadratics && model->quadratic_nodes && model->quadratic_body;
-  ok = ok && model->rest && model->tets && model->tet_body && model->volumes && model->bodies &&
-       model->mass && model->initial_velocity && model->is_prescribed;
+  bool ok = model->quadratics && model->quadratic_nodes && model->quadratic_part;
+  ok = ok && model->rest && model->tets && model->tet_body && model->tet_part && model->volumes &&
+       model->bodies && model->parts && model->mass && model->initial_velocity && model->is_prescribed;
   return ok ? STATUS_OK : status_no_memory("the model");
 }
 
@@ -49,6 +58,7 @@ static void append_mesh(FemModel *model, FemModelBody *body, const FemMesh *mesh
     int global = body->tet_begin + e;
     for (int k = 0; k < 4; k++) model->tets[global][k] = mesh->tets[e][k] + body->vertex_begin;
     model->tet_body[global] = body_number;
+    model->tet_part[global] = -1;
     model->volumes[global] = fem_model_element(model, global).volume;
   }
   for (int e = 0; e < mesh->quadratic_count; e++) {
@@ -58,17 +68,22 @@ static void append_mesh(FemModel *model, FemModelBody *body, const FemMesh *mesh
       model->quadratic_nodes[global][k] = mesh->quadratic[e][k] + body->vertex_begin;
       memcpy(nodes + 3 * k, mesh->rest + 3 * mesh->quadratic[e][k], 3 * sizeof *nodes);
     }
-    model->quadratic_body[global] = body_number;
     fem_quadratic_create_curved(&model->quadratics[global], nodes);
   }
 }
 
+static void add_mass(FemModel *model, FemModelBody *body, int part, double mass) {
+  model->parts[part].mass += mass;
+  body->mass += mass;
+}
+
 static void lump_quadratic_mass(FemModel *model, FemModelBody *body) {
   for (int e = body->quadratic_begin; e < body->quadratic_end; e++) {
-    double mass = body->material.density * model->quadratics[e].volume;
+    int part = model->quadratic_part[e];
+    double mass = model->parts[part].material.density * model->quadratics[e].volume;
     for (int k = 0; k < FEM_QUADRATIC_NODES; k++)
       model->mass[model->quadratic_nodes[e][k]] += fem_quadratic_mass_share(k) * mass;
-    body->mass += mass;
+    add_mass(model, body, part, mass);
   }
 }
 
@@ -78,9 +93,10 @@ static void lump_mass(FemModel *model, FemModelBody *body) {
     return;
   }
   for (int e = body->tet_begin; e < body->tet_end; e++) {
-    double share = 0.25 * body->material.density * model->volumes[e];
+    int part = model->tet_part[e];
+    double share = 0.25 * model->parts[part].material.density * model->volumes[e];
     for (int k = 0; k < 4; k++) model->mass[model->tets[e][k]] += share;
-    body->mass += 4 * share;
+    add_mass(model, body, part, 4 * share);
   }
 }
 
@@ -96,15 +112,17 @@ static void set_velocity(FemModel *model, const FemModelBody *body, const FemBod
   }
 }
 
-static void split_volume(FemModelBody *body) {
-  FemLame lame = fem_material_lame(&body->material);
-  double most = FEM_QUADRATIC_LARGEST_RATIO * lame.mu;
-  if (!(lame.lambda > most)) return;
-  body->local = fem_material_with_lambda(&body->material, most);
-  body->bulk = lame.lambda - fem_material_lame(&body->local).lambda;
+static Status append_body(FemModel *model, FemModelBody *body, const FemMesh *mesh) {
+  const FemBodyDef *def = &model->scene->bodies[body - model->bodies];
+  body->name = def->name;
+  body->element = def->element;
+  TRY(fem_model_parts_append(model, (int)(body - model->bodies), mesh));
+  lump_mass(model, body);
+  set_velocity(model, body, def);
+  return STATUS_OK;
 }
 
-static void append_bodies(FemModel *model, const FemMesh *meshes) {
+static Status append_bodies(FemModel *model, const FemMesh *meshes) {
   const FemSceneDef *scene = model->scene;
   int vertex = 0, tet = 0, quadratic = 0, obstacle = 0;
   for (int b = 0; b < model->body_count; b++) {
@@ -114,21 +132,14 @@ static void append_bodies(FemModel *model, const FemMesh *meshes) {
     body->quadratic_begin = quadratic, body->quadratic_end = quadratic += meshes[b].quadratic_count;
     append_mesh(model, body, &meshes[b], b);
     if (b < scene->body_count) {
-      const FemBodyDef *def = &scene->bodies[b];
-      body->name = def->name;
-      body->material = body->local = def->material;
-      body->element = def->element;
-      if (def->element == FEM_ELEMENT_NODAL) body->local = fem_material_local(&def->material);
-      if (def->element == FEM_ELEMENT_QUADRATIC) split_volume(body);
-      body->damping = def->material.damping >= 0 ? def->material.damping : scene->stiffness_damping;
-      lump_mass(model, body);
-      set_velocity(model, body, def);
+      TRY(append_body(model, body, &meshes[b]));
     } else {
       while (scene->obstacles[obstacle].kind != FEM_OBSTACLE_MESH) obstacle++;
       body->name = scene->obstacles[obstacle++].name;
       body->is_obstacle = true;
     }
   }
+  return STATUS_OK;
 }
 
 static Status add_loads(FemModel *model, const FemMesh *meshes) {
@@ -205,10 +216,11 @@ static Status measure(FemModel *model, const FemMesh *meshes) {
 
 static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
   TRY(allocate(model, meshes, mesh_count));
-  append_bodies(model, meshes);
+  TRY(append_bodies(model, meshes));
   TRY(fem_model_drivers_create(model, meshes));
   TRY(add_loads(model, meshes));
   TRY(mark_inner(model, meshes));
+  TRY(fem_model_parts_measure(model));
   TRY(add_probes(model, meshes));
   TRY(fem_model_divide(model));
   return measure(model, meshes);
@@ -239,11 +251,13 @@ void fem_model_destroy(FemModel *model) {
   memory_free(model->rest);
   memory_free(model->tets);
   memory_free(model->tet_body);
+  memory_free(model->tet_part);
   memory_free(model->volumes);
   memory_free(model->quadratics);
   memory_free(model->quadratic_nodes);
-  memory_free(model->quadratic_body);
+  memory_free(model->quadratic_part);
   memory_free(model->bodies);
+  memory_free(model->parts);
   memory_free(model->mass);
   memory_free(model->initial_velocity);
   fem_model_start_destroy(model->start);

@@ -12,6 +12,7 @@
 #include "fem/model/blow.h"
 #include "fem/model/leaf.h"
 #include "fem/model/limits.h"
+#include "fem/model/parts.h"
 #include "fem/model/patch.h"
 
 // The deformation of the interface over that of the bodies, and its depth over the height in an impact, at
@@ -32,7 +33,9 @@ static const double RESOLVED = 2.2, WIDE = 0.6;
 typedef struct Give {
   FemExtent extent; // its height is L
   double inverse;   // 1/E [1/Pa]
-  double give;      // (1 − HELD ν⁴)/E: of what is pressed between faces that hold it [1/Pa]
+  double give;      // (1 − HELD ν⁴)/E: of what is pressed between faces that hold it [1/Pa]; of several
+                    // materials the mean over the volume, and no more than the skin's
+  double skin;      // the mean of it over the surface
   double volume;    // V [m³]
   ContactRoundness roundness;
   double low[3], high[3]; // the box around it at rest; of a shape without elements that of its radius [m]
@@ -95,6 +98,15 @@ static void measure_box(const FemModel *model, const FemModelBody *body, Give *g
     }
 }
 
+static double inverse_of(const FemMaterial *material) {
+  return 1 / material->young;
+}
+
+static double give_of_material(const FemMaterial *material) {
+  double square = material->poisson * material->poisson;
+  return (1 - HELD * square * square) / material->young;
+}
+
 static Status measure_bodies(const FemModel *model, Give *gives) {
   bool *held = memory_zeroed((size_t)model->vertex_count, sizeof *held);
   Status status = held ? STATUS_OK : status_no_memory("the curvature of a body");
@@ -105,12 +117,11 @@ static Status measure_bodies(const FemModel *model, Give *gives) {
   TRY(status);
   measure_shapes(model, gives);
   for (int b = 0; b < model->scene->body_count; b++) {
-    const FemModelBody *body = &model->bodies[b];
-    const double square = body->material.poisson * body->material.poisson;
     TRY(fem_extent_measure(model, b, &gives[b].extent));
-    gives[b].inverse = 1 / body->material.young;
-    gives[b].give = (1 - HELD * square * square) / body->material.young;
-    gives[b].volume = body->mass / body->material.density;
+    gives[b].inverse = fem_model_parts_mean(model, b, inverse_of);
+    gives[b].skin = fem_model_parts_surface_mean(model, b, give_of_material);
+    gives[b].give = fmin(fem_model_parts_mean(model, b, give_of_material), gives[b].skin);
+    gives[b].volume = fem_model_parts_volume(model, b);
   }
   return STATUS_OK;
 }
@@ -229,7 +240,7 @@ static Meeting meeting_of(const FemModel *model, const Give *gives, const Course
   if (!meeting.is_hollow && !(meeting.radius > 0)) return meeting; // 2 % hold, whatever the elements are
   double edge = fmax(one->roundness.edge, other->roundness.edge);
   meeting.layer = (meeting.is_hollow ? HOLLOW_GIVE : LAYER_GIVE / resolved_by(meeting.radius, edge)) *
-                  (one->roundness.edge * one->give + other->roundness.edge * other->give);
+                  (one->roundness.edge * one->skin + other->roundness.edge * other->skin);
   return meeting;
 }
 

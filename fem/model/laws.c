@@ -23,8 +23,7 @@ static Status check(const FemModel *model, const FemContactLawDef *def) {
   char why[256];
   double stiffest = 0;
   if (!is_given(def)) return STATUS_OK;
-  for (int b = 0; b < model->scene->body_count; b++)
-    stiffest = fmax(stiffest, model->bodies[b].material.young);
+  for (int p = 0; p < model->part_count; p++) stiffest = fmax(stiffest, model->parts[p].material.young);
   if (contact_law_check(&def->law, model->length, HIGHEST * stiffest, why, sizeof why)) return STATUS_OK;
   const Expression *formula = def->law.formula;
   FemScenePlace place = def->place;

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "fem/model/parts.h"
 #include "fem/model/patch.h"
 
 // Length over thickness of a leaf, at least; λ³/(L h²); the depth under the loads over the thickness, and the
@@ -43,9 +44,13 @@ static bool others_move(const FemModel *model, const int bodies[2]) {
   return false;
 }
 
+static double plate_modulus(const FemMaterial *material) {
+  return material->young / (1 - material->poisson * material->poisson);
+}
+
+// Of several materials as if all were the softest: no more than the true one.
 static double bending_of(const FemModel *model, int body, double height) {
-  const FemMaterial *material = &model->bodies[body].material;
-  return material->young / (1 - material->poisson * material->poisson) * height * height * height / 12;
+  return fem_model_parts_least(model, body, plate_modulus) * height * height * height / 12;
 }
 
 // c at which the loads' sum presses two leaves together by that share, on a patch as long as λ.
@@ -54,8 +59,8 @@ static double stiffness_of_loads(const FemModel *model, const int bodies[2], con
   double force = 0, width = INFINITY, height = fmin(extents[0].height, extents[1].height);
   for (int b = 0; b < model->scene->body_count; b++) force += fem_patch_load(model, b);
   for (int k = 0; k < 2; k++) {
-    const FemModelBody *body = &model->bodies[bodies[k]];
-    width = fmin(width, body->mass / body->material.density / (extents[k].length * extents[k].height));
+    double volume = fem_model_parts_volume(model, bodies[k]);
+    width = fmin(width, volume / (extents[k].length * extents[k].height));
   }
   return force / (spread * width) / (2 * LOAD_DEPTH * height);
 }

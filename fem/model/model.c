@@ -19,7 +19,7 @@ double fem_model_contact_stiffness(const FemModel *model) {
   const FemContactDef *contact = &model->scene->contact;
   if (contact->stiffness > 0) return contact->stiffness;
   double softest = INFINITY;
-  for (int b = 0; b < model->scene->body_count; b++) softest = fmin(softest, model->bodies[b].material.young);
+  for (int p = 0; p < model->part_count; p++) softest = fmin(softest, model->parts[p].material.young);
   return softest;
 }
 
@@ -29,8 +29,8 @@ double fem_model_largest_ratio(const FemModelBody *body) {
 }
 
 bool fem_model_has_linear_materials(const FemModel *model) {
-  for (int b = 0; b < model->scene->body_count; b++)
-    if (!fem_material_is_linear(&model->bodies[b].material)) return false;
+  for (int p = 0; p < model->part_count; p++)
+    if (!fem_material_is_linear(&model->parts[p].material)) return false;
   return true;
 }
 
@@ -40,23 +40,23 @@ double fem_model_wave(const FemMaterial *material) {
 
 double fem_model_slowest_wave(const FemModel *model) {
   double slowest = INFINITY;
-  for (int b = 0; b < model->scene->body_count; b++)
-    slowest = fmin(slowest, fem_model_wave(&model->scene->bodies[b].material));
+  for (int p = 0; p < model->part_count; p++)
+    slowest = fmin(slowest, fem_model_wave(&model->parts[p].material));
   return slowest;
 }
 
 double fem_model_fastest_wave(const FemModel *model) {
   double fastest = 0;
-  for (int b = 0; b < model->scene->body_count; b++)
-    fastest = fmax(fastest, fem_model_wave(&model->scene->bodies[b].material));
+  for (int p = 0; p < model->part_count; p++)
+    fastest = fmax(fastest, fem_model_wave(&model->parts[p].material));
   return fastest;
 }
 
 double fem_model_strain_energy(const FemModel *model, double strain) {
   double energy = 0;
-  for (int b = 0; b < model->scene->body_count; b++) {
-    const FemModelBody *body = &model->bodies[b];
-    energy += strain * strain * body->material.young * body->mass / body->material.density;
+  for (int p = 0; p < model->part_count; p++) {
+    const FemModelPart *part = &model->parts[p];
+    energy += strain * strain * part->material.young * part->mass / part->material.density;
   }
   return energy;
 }
@@ -101,15 +101,16 @@ double fem_model_det(const FemModel *model, int tet, const double *positions) {
 
 void fem_model_stress(const FemModel *model, int tet, const double *positions, double stress[6]) {
   const FemModelBody *body = body_of(model, tet);
+  const FemModelPart *part = &model->parts[model->tet_part[tet]];
   double x[30];
   if (body->element != FEM_ELEMENT_QUADRATIC) {
     gather(model->tets[tet], 4, positions, x);
     const FemElement element = fem_model_element(model, tet);
-    fem_element_cauchy(&element, &body->local, x, stress);
+    fem_element_cauchy(&element, &part->local, x, stress);
     return;
   }
   int quadratic = quadratic_of(model, tet);
-  FemQuadraticLaw law = {&body->local, body->bulk};
+  FemQuadraticLaw law = {&part->local, part->bulk};
   gather(model->quadratic_nodes[quadratic], FEM_QUADRATIC_NODES, positions, x);
   fem_quadratic_cauchy(&model->quadratics[quadratic], law, x, (tet - body->tet_begin) % FEM_QUADRATIC_PARTS,
                        stress);

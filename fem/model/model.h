@@ -18,16 +18,25 @@ typedef struct FemModelBody {
   const char *name; // borrowed from the scene
   int vertex_begin, vertex_end;
   int tet_begin, tet_end;
-  FemMaterial material; // obstacles: zeroed
-  FemMaterial local;    // what an element resists with by itself; the rest of λ is the vertices'
-                        // (the effect volume) or the mean's of a quadratic one (fem/element/quadratic.h)
-  double bulk;          // that rest, of quadratic ones; else 0 [Pa]
+  int part_begin, part_end; // obstacles: none
   int quadratic_begin, quadratic_end;
   FemElementKind element;
-  double damping; // β [s]
-  double mass;    // [kg]
+  double mass; // [kg]
   bool is_obstacle;
 } FemModelBody;
+
+// What of a body is made of one material: all of it, unless its scene says otherwise.
+typedef struct FemModelPart {
+  int body;
+  int item; // of the body's materials in the scene; −1: its `material`
+  FemMaterial material;
+  FemMaterial local; // what an element resists with by itself; the rest of λ is the vertices'
+                     // (the effect volume) or the mean's of a quadratic one (fem/element/quadratic.h)
+  double bulk;       // that rest, of quadratic ones; else 0 [Pa]
+  double damping;    // β [s]
+  double mass;       // [kg]
+  double skin;       // of the body's surface that may touch, at rest [m²]
+} FemModelPart;
 
 // Coordinates whose motion is prescribed by one constraint, until it is released.
 typedef struct FemModelDriver {
@@ -43,13 +52,16 @@ typedef struct FemModel {
   double *rest;                            // [m]                                       (vertex_count, 3)
   int (*tets)[4];                          //                                           (tet_count)
   int *tet_body;                           //                                           (tet_count)
+  int *tet_part;                           // −1: of an obstacle                        (tet_count)
   double *volumes;                         // at rest [m³]                              (tet_count)
   int quadratic_count;                     // a body's tets are the eighths of its quadratic ones
   FemQuadratic *quadratics;                //                                           (quadratic_count)
   int (*quadratic_nodes)[10];              //                                           (quadratic_count)
-  int *quadratic_body;                     //                                           (quadratic_count)
+  int *quadratic_part;                     //                                           (quadratic_count)
   FemModelBody *bodies;                    //                                           (body_count)
-  double *mass;                            // lumped, obstacles 0 [kg]                  (vertex_count)
+  FemModelPart *parts;                     // by bodies                                 (part_count)
+  int part_count;
+  double *mass;             // lumped, obstacles 0 [kg]                  (vertex_count)
   unsigned char *inner;     // bit k: on the k-th part of the boundary that is no surface (vertex_count)
   double *initial_velocity; // [m/s]                                     (vertex_count, 3)
   FemStart *start;          // owned; NULL: the bodies start at rest, as placed
@@ -69,6 +81,12 @@ typedef struct FemModel {
 // Whether the driver has been released at a time.
 static inline bool fem_model_is_released(const FemModelDriver *driver, double time) {
   return driver->def->release > 0 && driver->def->release <= time;
+}
+
+// Of an element; of an obstacle the first law.
+static inline FemMaterialLaw fem_model_law(const FemModel *model, int tet) {
+  int part = model->tet_part[tet];
+  return part < 0 ? (FemMaterialLaw)0 : model->parts[part].material.law;
 }
 
 // For messages: the name of the body that a vertex is of, "?" if it has none; borrowed.

@@ -6,6 +6,7 @@
 #include "base/vec3.h"
 #include "fem/model/floating.h"
 #include "fem/model/limits.h"
+#include "fem/model/parts.h"
 
 double fem_model_speed_share(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
@@ -58,9 +59,8 @@ double fem_model_rest_time(const FemModel *model) {
   double given = model->scene->contact.rest_time, longest = 0;
   if (given > 0) return given;
   for (int b = 0; b < model->scene->body_count; b++) {
-    const FemModelBody *body = &model->bodies[b];
-    double diagonal = sqrt(3) * cbrt(body->mass / body->material.density);
-    longest = fmax(longest, diagonal / fem_model_wave(&body->material));
+    double diagonal = sqrt(3) * cbrt(fem_model_parts_volume(model, b));
+    longest = fmax(longest, diagonal / fem_model_parts_least(model, b, fem_model_wave));
   }
   return FEM_REST_CROSSINGS * longest;
 }

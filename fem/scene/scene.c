@@ -30,6 +30,8 @@ static void free_loads(FemLoadDef *loads, int count) {
 static void free_body(FemBodyDef *body) {
   memory_free(body->name);
   memory_free(body->mesh_path);
+  for (int i = 0; i < body->part_count; i++) memory_free(body->parts[i].select.group);
+  memory_free(body->parts);
   free_constraints(body->fixed, body->fixed_count);
   free_constraints(body->driven, body->driven_count);
   free_loads(body->loads, body->load_count);
@@ -74,6 +76,19 @@ void fem_scene_destroy(FemSceneDef *scene) {
   memory_free(scene->title);
   memory_free(scene->start);
   *scene = (FemSceneDef){0};
+}
+
+const FemMaterial *fem_scene_material(const FemBodyDef *body, int index) {
+  return index == 0 ? &body->material : &body->parts[index - 1].material;
+}
+
+bool fem_scene_has_material(const FemSceneDef *scene, bool (*is_such)(const FemMaterial *material)) {
+  for (int b = 0; b < scene->body_count; b++)
+    for (int i = 0; i <= scene->bodies[b].part_count; i++) {
+      const FemMaterial *material = fem_scene_material(&scene->bodies[b], i);
+      if (material->young > 0 && is_such(material)) return true;
+    }
+  return false;
 }
 
 double fem_scene_most_friction(const FemContactDef *contact) {

@@ -106,6 +106,12 @@ typedef struct FemProbeDef {
   char *name;
 } FemProbeDef;
 
+// What a part of a body is made of.
+typedef struct FemPartDef {
+  FemMaterial material; // the first member
+  FemSelectDef select;  // of tetrahedra: in a group, or with their middle inside
+} FemPartDef;
+
 typedef struct FemBodyDef {
   char *name;
   char *mesh_path;    // as written, relative to the scene file; NULL: a box
@@ -114,7 +120,9 @@ typedef struct FemBodyDef {
   FemMeshOptions mesh_options;
   FemScenePlace mesh_place;
   FemPlacement placement;
-  FemMaterial material;
+  FemMaterial material; // of what no part has; E 0: of nothing
+  FemPartDef *parts;    //                                    (part_count)
+  int part_count;
   FemElementKind element;
   bool self_contact;       // its parts may touch each other
   double velocity[3];      // initial [m/s]
@@ -246,6 +254,11 @@ void fem_scene_destroy(FemSceneDef *scene);
 
 // When frame 0 … frames is due [s].
 double fem_scene_frame_time(const FemSceneDef *scene, int frame);
+
+// What a body is made of: its own material, then those of its parts.
+const FemMaterial *fem_scene_material(const FemBodyDef *body, int index);
+// Whether some body is made of such a material.
+bool fem_scene_has_material(const FemSceneDef *scene, bool (*is_such)(const FemMaterial *material));
 
 // Obstacles without elements.
 int fem_scene_shape_count(const FemSceneDef *scene);

@@ -10,4 +10,9 @@
 Status fem_select_vertices(const FemSelectDef *select, const FemMesh *mesh, int **vertices,
                            int *vertex_count);
 
+// The tetrahedra by number, quadratic ones of a mesh that was made quadratic: those that the file puts into a
+// group, or those whose middle (of the corners) the selection holds. As above.
+Status fem_select_elements(const FemSelectDef *select, const FemMesh *mesh, int **elements,
+                           int *element_count);
+
 #endif

@@ -68,7 +68,7 @@ double fem_equilibrium_longest_share(const FemEquilibrium *equilibrium, const do
 double fem_equilibrium_first_shift(const FemEquilibrium *equilibrium) {
   const FemModel *model = equilibrium->system->model;
   double shift = INFINITY;
-  for (int b = 0; b < model->scene->body_count; b++)
-    shift = fmin(shift, model->bodies[b].material.young / model->bodies[b].material.density);
+  for (int p = 0; p < model->part_count; p++)
+    shift = fmin(shift, model->parts[p].material.young / model->parts[p].material.density);
   return shift / (model->length * model->length);
 }

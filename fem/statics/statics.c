@@ -46,12 +46,13 @@ static Status check_scene(const FemSceneDef *scene) {
 
 static double smallest_scale(const FemModel *model) {
   double softest = INFINITY, rounding = 0;
-  for (int b = 0; b < model->scene->body_count; b++) {
-    const FemModelBody *body = &model->bodies[b];
+  for (int p = 0; p < model->part_count; p++) {
+    const FemMaterial *material = &model->parts[p].material;
+    const FemModelBody *body = &model->bodies[model->parts[p].body];
     double extent = fem_equilibrium_largest(model->rest + 3 * (size_t)body->vertex_begin,
                                             3 * (body->vertex_end - body->vertex_begin));
-    double modulus = body->material.young / (1 - 2 * body->material.poisson);
-    softest = fmin(softest, body->material.young);
+    double modulus = material->young / (1 - 2 * material->poisson);
+    softest = fmin(softest, material->young);
     rounding = fmax(rounding, FORCE_ROUNDING * DBL_EPSILON * modulus * model->edge * extent);
   }
   return fmax(SMALLEST_SCALE * softest * model->edge * model->edge, rounding / TOLERANCE);
@@ -159,7 +160,7 @@ static Status say_why(FemStatics *statics, double time, const double *u) {
     if (J < smallest) smallest = J, flattest = e;
   }
   text_append(text, sizeof text, &used, "; element %d has the smallest det F, %.3g", flattest, smallest);
-  FemMaterialLaw law = model->bodies[model->tet_body[flattest]].material.law;
+  FemMaterialLaw law = fem_model_law(model, flattest);
   if (smallest < (law == FEM_MATERIAL_STVK ? SQUEEZED_STVK : SQUEEZED))
     text_append(text, sizeof text, &used, ": %s", fem_material_limit(law));
   for (int k = 0; is_known && k < WORST_COUNT && k < system->numbering.count; k++) {
@@ -214,14 +215,14 @@ static Status check_orientation(const FemStatics *statics, double time) {
   const double *positions = statics->equilibrium.state->positions;
   for (int e = 0; e < model->tet_count; e++) {
     const FemModelBody *body = &model->bodies[model->tet_body[e]];
-    if (body->is_obstacle || body->material.law == FEM_MATERIAL_LINEAR) continue;
+    if (body->is_obstacle || fem_model_law(model, e) == FEM_MATERIAL_LINEAR) continue;
     double J = fem_model_det(model, e, positions);
     if (J > 0) continue;
     const double *x = positions + 3 * (size_t)model->tets[e][0];
     return status_fail(STATUS_RETRY,
                        "no equilibrium at t = %.9g: forces balance only with element %d of body '%s' "
                        "inverted, det F = %.3g, at (%.4g, %.4g, %.4g): %s",
-                       time, e, body->name, J, x[0], x[1], x[2], fem_material_limit(body->material.law));
+                       time, e, body->name, J, x[0], x[1], x[2], fem_material_limit(fem_model_law(model, e)));
   }
   return STATUS_OK;
 }

@@ -5,6 +5,7 @@
 
 #include "base/ranks.h"
 #include "fem/model/floating.h"
+#include "fem/model/parts.h"
 
 // This rank's unknowns of a body: begin … *end, in the order of the bodies.
 static void find_end(const FemModel *model, const FemPart *part, int body, int begin, int *end) {
@@ -57,8 +58,7 @@ void fem_error_weights(const FemErrorTolerance *tolerance, const FemModel *model
   double speed = tolerance->speed_share > 0 ? fastest(model, part, v) : 0;
   for (int b = 0, begin = 0, end; b < model->body_count; b++, begin = end) {
     find_end(model, part, b, begin, &end);
-    const FemMaterial *material = &model->bodies[b].material;
-    double wave = sqrt(material->young / material->density);
+    double wave = fem_model_parts_least(model, b, fem_model_wave);
     double velocity = fmax(tolerance->velocity, tolerance->speed_share * fmin(speed, wave));
     for (int i = begin; i < end; i++) {
       weights[i] = 1 / tolerance->displacement;

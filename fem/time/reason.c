@@ -25,7 +25,7 @@ static void name_inverted(const FemModel *model, const double *positions, char *
   if (first < 0) return;
   const FemModelBody *body = &model->bodies[model->tet_body[first]];
   snprintf(text, size, ". Elements inside out: %d, element %d of body '%s' first: %s", count, first,
-           body->name, fem_material_limit(body->material.law));
+           body->name, fem_material_limit(fem_model_law(model, first)));
 }
 
 // The element with this vertex that is squeezed most, as text; nothing where there are no elements.

@@ -62,11 +62,11 @@ static bool is_at_rest(const FemSceneDef *scene) {
   return !moves;
 }
 
-static bool is_locking(const FemSceneDef *scene) {
+static bool is_locking(const FemModel *model) {
   bool locks = false;
-  for (int b = 0; b < scene->body_count; b++)
-    locks = locks ||
-            (scene->bodies[b].material.poisson >= 0.45 && scene->bodies[b].element == FEM_ELEMENT_LINEAR);
+  for (int p = 0; p < model->part_count; p++)
+    locks = locks || (model->parts[p].material.poisson >= 0.45 &&
+                      model->bodies[model->parts[p].body].element == FEM_ELEMENT_LINEAR);
   return locks;
 }
 
@@ -126,7 +126,7 @@ static Notes take_notes(const AppJob *job) {
        "contact is on, but there is only one body, without self_contact, and no obstacle to touch");
   note(&notes, is_at_rest(scene),
        "nothing moves: no gravity, no initial velocity, no driven vertices, no moving obstacle");
-  note(&notes, is_locking(scene),
+  note(&notes, is_locking(&job->model),
        "linear tetrahedra are too stiff at a Poisson's ratio of 0.45 and above: bending is underestimated; "
        "try element: quadratic or nodal");
   note(&notes, job->model.free_count == 0, "every vertex is prescribed: there is nothing to solve");
@@ -161,6 +161,40 @@ static void describe_mesh(const char *path, const int cells[3], char *text, size
 
 // As text.
 
+// What selects a part, as its group or "materials[0], box".
+static void describe_part(const FemBodyDef *def, int item, char *text, size_t size) {
+  static const char *const kinds[] = {
+      [FEM_SELECT_BOX] = "box", [FEM_SELECT_HALFSPACE] = "halfspace", [FEM_SELECT_RADIUS] = "radius"};
+  const FemSelectDef *select = item < 0 ? NULL : &def->parts[item].select;
+  if (!select)
+    snprintf(text, size, "material");
+  else
+    snprintf(text, size, "materials[%d], %s%s", item,
+             select->kind == FEM_SELECT_GROUP ? "group " : kinds[select->kind],
+             select->kind == FEM_SELECT_GROUP ? select->group : "");
+}
+
+static int count_tets(const FemModel *model, int part) {
+  const FemModelBody *body = &model->bodies[model->parts[part].body];
+  int count = 0;
+  for (int e = body->tet_begin; e < body->tet_end; e++) count += model->tet_part[e] == part;
+  return count;
+}
+
+// Which part it is only where the scene gives several materials.
+static void print_part(const FemModel *model, int p, const FemBodyDef *def) {
+  const FemModelPart *part = &model->parts[p];
+  char name[160];
+  describe_part(def, part->item, name, sizeof name);
+  if (def->part_count > 0)
+    printf("  %-12s %s, %d tetrahedra: ", "", name, count_tets(model, p));
+  else
+    printf("  %-12s ", "");
+  printf("%s, E %g Pa, ν %g, ρ %g kg/m³: %.4g kg\n", fem_material_name(part->material.law),
+         part->material.young, part->material.poisson, part->material.density, part->mass);
+  if (part->damping > 0) printf("  %-12s damping β %g s\n", "", part->damping);
+}
+
 static void print_body(const AppJob *job, int b) {
   const FemModelBody *body = &job->model.bodies[b];
   const FemBodyDef *def = &job->scene.bodies[b];
@@ -171,9 +205,7 @@ static void print_body(const AppJob *job, int b) {
   printf("  %-12s %s: %d vertices, ", body->name, mesh, body->vertex_end - body->vertex_begin);
   if (quadratic_count > 0) printf("%d quadratic tetrahedra, for contact in ", quadratic_count);
   printf("%d tetrahedra\n", body->tet_end - body->tet_begin);
-  printf("  %-12s %s, E %g Pa, ν %g, ρ %g kg/m³: %.4g kg\n", "", fem_material_name(body->material.law),
-         body->material.young, body->material.poisson, body->material.density, body->mass);
-  if (body->damping > 0) printf("  %-12s damping β %g s\n", "", body->damping);
+  for (int p = body->part_begin; p < body->part_end; p++) print_part(&job->model, p, def);
   if (prescribed.fixed + prescribed.driven > 0)
     printf("  %-12s %d coordinates fixed, %d driven\n", "", prescribed.fixed, prescribed.driven);
 }
@@ -277,6 +309,20 @@ static void print_text(const AppJob *job, const Notes *notes, const FemDivisionP
 
 // As JSON.
 
+static void record_part(const FemModel *model, int p, const FemBodyDef *def, Record *record) {
+  const FemModelPart *part = &model->parts[p];
+  char name[160];
+  describe_part(def, part->item, name, sizeof name);
+  record_text(record, "of", name);
+  record_text(record, "law", fem_material_name(part->material.law));
+  record_number(record, "young", part->material.young);
+  record_number(record, "poisson", part->material.poisson);
+  record_number(record, "density", part->material.density);
+  record_number(record, "damping", part->damping);
+  record_integer(record, "tetrahedra", count_tets(model, p));
+  record_number(record, "mass", part->mass);
+}
+
 static void record_body(const AppJob *job, int b, Record *record) {
   const FemModelBody *body = &job->model.bodies[b];
   const FemBodyDef *def = &job->scene.bodies[b];
@@ -290,8 +336,9 @@ static void record_body(const AppJob *job, int b, Record *record) {
   if (body->quadratic_end > body->quadratic_begin)
     record_integer(record, "quadratic_tetrahedra", body->quadratic_end - body->quadratic_begin);
   record_number(record, "mass", body->mass);
-  record_text(record, "law", fem_material_name(body->material.law));
-  record_number(record, "damping", body->damping);
+  RecordList *materials = record_list(record, "materials");
+  for (int p = body->part_begin; p < body->part_end; p++)
+    record_part(&job->model, p, def, record_append(materials));
   record_integer(record, "fixed_coordinates", prescribed.fixed);
   record_integer(record, "driven_coordinates", prescribed.driven);
 }

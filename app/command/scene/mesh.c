@@ -92,8 +92,12 @@ static void print_text(const char *path, const FemMesh *mesh, const FemMeshQuali
   printf("  min det      %.3g in tetrahedron %d (6 V over longest edge cubed; regular: 0.707)\n", q->min_det,
          q->min_det_tet);
   printf("  groups      ");
-  for (int g = 0; g < mesh->group_count; g++)
-    printf("%s %s (%d)", g ? "," : "", mesh->groups[g].name, mesh->groups[g].vertex_count);
+  for (int g = 0; g < mesh->group_count; g++) {
+    const FemMeshGroup *group = &mesh->groups[g];
+    printf("%s %s (%d", g ? "," : "", group->name, group->vertex_count);
+    if (group->tet_count > 0) printf(", %d tetrahedra", group->tet_count);
+    printf(")");
+  }
   printf("%s\n", mesh->group_count ? "" : " none");
   for (int k = 0; k < remarks->count; k++)
     printf("  %s %s\n", k ? "            " : "remarks     ", remarks->lines[k]);
@@ -142,6 +146,7 @@ static Status print_json(const char *path, const FemMesh *mesh, const FemMeshQua
     Record *group = record_append(groups);
     record_text(group, "name", mesh->groups[g].name);
     record_integer(group, "vertices", mesh->groups[g].vertex_count);
+    record_integer(group, "tetrahedra", mesh->groups[g].tet_count);
   }
   RecordList *lines = record_list(root, "remarks");
   for (int k = 0; k < remarks->count; k++) record_append_text(lines, remarks->lines[k]);

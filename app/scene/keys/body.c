@@ -22,6 +22,31 @@ static const SceneSection probe = {.help = "output for a part of a body",
                                    .one_of = "box halfspace radius normal group all",
                                    PLACE(FemProbeDef, select.place)};
 
+_Static_assert(offsetof(FemPartDef, material) == 0, "the keys of a material count from it");
+
+// Whole tetrahedra: what lies on a surface is none.
+static const SceneKey part_keys[] = {
+    {"group", SCENE_TEXT, AT(FemPartDef, select.group), MARK(FemPartDef, select.kind, FEM_SELECT_GROUP),
+     .help = "its tetrahedra: those of a named group of the mesh, as of a physical volume of gmsh"},
+    {"box", SCENE_SECTION, .offset = offsetof(FemPartDef, select), .section = &app_scene_keys_select_box,
+     MARK(FemPartDef, select.kind, FEM_SELECT_BOX),
+     .help = "those with their middle in a box, as placed, at rest"},
+    {"halfspace", SCENE_SECTION, .offset = offsetof(FemPartDef, select),
+     .section = &app_scene_keys_select_halfspace, MARK(FemPartDef, select.kind, FEM_SELECT_HALFSPACE),
+     .help = "those with their middle on one side of a plane"},
+    {"radius", SCENE_SECTION, .offset = offsetof(FemPartDef, select),
+     .section = &app_scene_keys_select_radius, MARK(FemPartDef, select.kind, FEM_SELECT_RADIUS),
+     .help = "those with their middle at a distance from an axis or a point"},
+    {0},
+};
+static const SceneSection part = {.help = "a part of a body that is made of something else",
+                                  .size = sizeof(FemPartDef),
+                                  .keys = part_keys,
+                                  .more = &app_scene_keys_material,
+                                  .one_of = "group box halfspace radius",
+                                  PLACE(FemPartDef, select.place),
+                                  .finish = app_scene_keys_material_finish};
+
 static const SceneKey body_keys[] = {
     {"name", SCENE_LABEL, AT(FemBodyDef, name), .required = "block",
      .help = "its name in messages and outputs"},
@@ -31,8 +56,12 @@ static const SceneKey body_keys[] = {
     {"place", SCENE_SECTION, AT(FemBodyDef, placement), .section = &app_scene_keys_mesh_place,
      .help = "position of the mesh"},
     {"material", SCENE_SECTION, AT(FemBodyDef, material),
-     .required = "{young: 1e6, poisson: 0.4, density: 1000}", .section = &app_scene_keys_material,
-     .help = "constitutive law and parameters"},
+     .absent_help = "none: every tetrahedron is in one of `materials`", .section = &app_scene_keys_material,
+     .help = "constitutive law and parameters, {young: 1e6, poisson: 0.4, density: 1000} at least"},
+    {"materials", SCENE_LIST, AT(FemBodyDef, parts), .section = &part,
+     .count_offset = offsetof(FemBodyDef, part_count),
+     .help = "of parts that are made of something else, each with all keys of a material; `material` is that "
+             "of the rest. No tetrahedron may be in two parts"},
     {"element", SCENE_CHOICE, AT(FemBodyDef, element), .fallback = "linear",
      .choices = &app_scene_choices_elements, .help = "element formulation"},
     {"self_contact", SCENE_SWITCH, AT(FemBodyDef, self_contact), .fallback = "false",
@@ -60,5 +89,8 @@ static const SceneKey body_keys[] = {
          "and in the summary"},
     {0},
 };
-const SceneSection app_scene_keys_body = {
-    .help = "an elastic body", .size = sizeof(FemBodyDef), .keys = body_keys, PLACE(FemBodyDef, place)};
+const SceneSection app_scene_keys_body = {.help = "an elastic body",
+                                          .size = sizeof(FemBodyDef),
+                                          .keys = body_keys,
+                                          .some_of = "material materials",
+                                          PLACE(FemBodyDef, place)};

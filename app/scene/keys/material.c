@@ -17,7 +17,7 @@ static const char *finish_ogden(void *self, const char **key) {
   return sum > 0 ? NULL : "one share at least must be positive";
 }
 
-static const char *finish_material(void *self, const char **key) {
+const char *app_scene_keys_material_finish(void *self, const char **key) {
   const FemMaterial *material = self;
   *key = "poisson";
   if (material->law == FEM_MATERIAL_NEO_HOOKEAN_LOG && material->poisson < 0)
@@ -87,4 +87,4 @@ static const SceneKey material_keys[] = {
     {0},
 };
 const SceneSection app_scene_keys_material = {
-    .help = "an elastic solid", .keys = material_keys, .finish = finish_material};
+    .help = "an elastic solid", .keys = material_keys, .finish = app_scene_keys_material_finish};

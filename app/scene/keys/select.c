@@ -22,8 +22,8 @@ static const SceneKey select_box_keys[] = {
      .help = "upper corner; the faces count as inside"},
     {0},
 };
-static const SceneSection select_box = {
-    .help = "vertices in a box", .keys = select_box_keys, .finish = finish_select_box};
+const SceneSection app_scene_keys_select_box = {
+    .help = "what lies in a box", .keys = select_box_keys, .finish = finish_select_box};
 
 static const SceneKey select_halfspace_keys[] = {
     {"point", SCENE_VECTOR, AT(FemSelectDef, point), .unit = "m", .required = "[0, 0, 0]",
@@ -32,8 +32,8 @@ static const SceneKey select_halfspace_keys[] = {
      .help = "points away from the selected side"},
     {0},
 };
-static const SceneSection select_halfspace = {.help = "vertices on one side of a plane",
-                                              .keys = select_halfspace_keys};
+const SceneSection app_scene_keys_select_halfspace = {.help = "what lies on one side of a plane",
+                                                      .keys = select_halfspace_keys};
 
 static const char *finish_select_radius(void *self, const char **key) {
   const FemSelectDef *select = self;
@@ -52,10 +52,10 @@ static const SceneKey select_radius_keys[] = {
      .help = "largest distance; both count as inside"},
     {0},
 };
-static const SceneSection select_radius = {.help = "vertices by their distance from a point or an axis",
-                                           .keys = select_radius_keys,
-                                           .some_of = "min max",
-                                           .finish = finish_select_radius};
+const SceneSection app_scene_keys_select_radius = {.help = "what lies at a distance from a point or an axis",
+                                                   .keys = select_radius_keys,
+                                                   .some_of = "min max",
+                                                   .finish = finish_select_radius};
 
 static const SceneKey select_normal_keys[] = {
     {"direction", SCENE_DIRECTION, AT(FemSelectDef, normal), .required = "[0, 0, 1]",
@@ -68,11 +68,12 @@ static const SceneSection select_normal = {.help = "vertices of the surface by i
                                            .keys = select_normal_keys};
 
 static const SceneKey select_keys[] = {
-    {"box", SCENE_SECTION, .section = &select_box, MARK(FemSelectDef, kind, FEM_SELECT_BOX),
+    {"box", SCENE_SECTION, .section = &app_scene_keys_select_box, MARK(FemSelectDef, kind, FEM_SELECT_BOX),
      .help = "the vertices in a box, as placed, at rest"},
-    {"halfspace", SCENE_SECTION, .section = &select_halfspace, MARK(FemSelectDef, kind, FEM_SELECT_HALFSPACE),
-     .help = "the vertices x with normal·(x − point) ≤ 0"},
-    {"radius", SCENE_SECTION, .section = &select_radius, MARK(FemSelectDef, kind, FEM_SELECT_RADIUS),
+    {"halfspace", SCENE_SECTION, .section = &app_scene_keys_select_halfspace,
+     MARK(FemSelectDef, kind, FEM_SELECT_HALFSPACE), .help = "the vertices x with normal·(x − point) ≤ 0"},
+    {"radius", SCENE_SECTION, .section = &app_scene_keys_select_radius,
+     MARK(FemSelectDef, kind, FEM_SELECT_RADIUS),
      .help = "the vertices at a distance from an axis or a point: rims, holes, balls"},
     {"normal", SCENE_SECTION, .section = &select_normal, MARK(FemSelectDef, kind, FEM_SELECT_NORMAL),
      .help = "the corners of the surface triangles that face a direction, as placed, at rest"},

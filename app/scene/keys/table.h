@@ -18,8 +18,11 @@
 extern const SceneSection app_scene_keys_mesh;       // of bodies and obstacles, from their `mesh_path` on
 extern const SceneSection app_scene_keys_mesh_place; // FemPlacement
 extern const SceneSection app_scene_keys_material;   // FemMaterial
-extern const SceneSection app_scene_keys_select;     // FemSelectDef, the first member of what selects
-extern const SceneSection app_scene_keys_motion;     // FemConstraintDef, of an obstacle
+const char *app_scene_keys_material_finish(void *self, const char **key); // of what begins with one
+extern const SceneSection app_scene_keys_select; // FemSelectDef, the first member of what selects
+extern const SceneSection app_scene_keys_select_box, app_scene_keys_select_halfspace,
+    app_scene_keys_select_radius;                // parts of it
+extern const SceneSection app_scene_keys_motion; // FemConstraintDef, of an obstacle
 extern const SceneSection app_scene_keys_motion_fixed, app_scene_keys_motion_driven; // of vertices
 extern const SceneSection app_scene_keys_load;                                       // FemLoadDef
 extern const SceneSection app_scene_keys_body;                                       // FemBodyDef

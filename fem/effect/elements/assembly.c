@@ -12,7 +12,7 @@ enum { FEW_FORCES = 8000, FEW_MATRICES = 2000 };
 enum { QUADRATIC_FORCES = 6, QUADRATIC_MATRICES = 16 };
 
 Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
-                           bool (*takes)(const FemModelBody *body)) {
+                           bool (*takes)(const FemModelPart *part)) {
   *assembly = (FemAssembly){.model = model, .packs = assembly->own};
   for (int k = 0; k < 2; k++) {
     TRY(fem_packs_create(&assembly->own[k], model, k == 1, takes));
@@ -23,7 +23,7 @@ Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
   return STATUS_OK;
 }
 
-// Both have elements of the same bodies where they have as many: one takes all that there are.
+// Both have elements of the same parts where they have as many: one takes all that there are.
 void fem_assembly_borrow(FemAssembly *assembly, FemAssembly *from) {
   for (int k = 0; k < 2; k++)
     if (assembly->own[k].element_count != from->packs[k].element_count) return;
@@ -64,9 +64,9 @@ Status fem_assembly_couple(const FemAssembly *assembly, FemPattern *pattern, int
   return STATUS_OK;
 }
 
-static FemAssemblyPack pack_of(const FemAssembly *assembly, const FemState *state, int body) {
+static FemAssemblyPack pack_of(const FemAssembly *assembly, const FemState *state, int part) {
   return (FemAssemblyPack){.lanes = fem_lanes(),
-                           .body = &assembly->model->bodies[body],
+                           .part = &assembly->model->parts[part],
                            .positions = state->positions,
                            .velocities = state->velocities};
 }
@@ -87,8 +87,8 @@ static void add_pack_force(const FemPacks *packs, int p, FemAssemblyPack *pack,
 
 static void add_chunk_forces(const FemAssembly *assembly, const FemPacks *packs, const FemState *state,
                              const FemAssemblyKernels *kernels, int chunk, double *force) {
-  FemAssemblyPack pack = pack_of(assembly, state, packs->chunk_body[chunk]);
-  if (state->is_held && state->is_held[packs->chunk_body[chunk]]) return;
+  FemAssemblyPack pack = pack_of(assembly, state, packs->chunk_part[chunk]);
+  if (state->is_held && state->is_held[pack.part->body]) return;
   for (int p = packs->chunk_begin[chunk]; p < packs->chunk_begin[chunk + 1]; p++)
     add_pack_force(packs, p, &pack, kernels, force);
 }
@@ -149,8 +149,8 @@ static void add_quadratic_matrix(const FemPacks *packs, int p, FemAssemblyPack *
 static void add_chunk_matrices(const FemAssembly *assembly, const FemPacks *packs, const FemState *state,
                                const FemAssemblyKernels *kernels, Scales scales, int chunk,
                                FemMatrix *matrix) {
-  FemAssemblyPack pack = pack_of(assembly, state, packs->chunk_body[chunk]);
-  if (state->is_held && state->is_held[packs->chunk_body[chunk]]) return;
+  FemAssemblyPack pack = pack_of(assembly, state, packs->chunk_part[chunk]);
+  if (state->is_held && state->is_held[pack.part->body]) return;
   for (int p = packs->chunk_begin[chunk]; p < packs->chunk_begin[chunk + 1]; p++) {
     if (packs->is_quadratic)
       add_quadratic_matrix(packs, p, &pack, kernels, scales, matrix);
@@ -178,7 +178,7 @@ Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state,
 
 static double sum_chunk(const FemAssembly *assembly, const FemPacks *packs, const FemState *state,
                         const FemAssemblyKernels *kernels, int chunk) {
-  FemAssemblyPack pack = pack_of(assembly, state, packs->chunk_body[chunk]);
+  FemAssemblyPack pack = pack_of(assembly, state, packs->chunk_part[chunk]);
   double sum = 0;
   for (int p = packs->chunk_begin[chunk]; p < packs->chunk_begin[chunk + 1]; p++) {
     FemLanesRow own;

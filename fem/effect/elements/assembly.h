@@ -12,12 +12,12 @@
 #include "fem/effect/effect.h"
 #include "fem/effect/elements/packs.h"
 
-// Eight elements of a body, of one kind.
+// Eight elements of a part of a body, of one kind.
 typedef struct FemAssemblyPack {
   const FemLanes *lanes; // the kernels of this processor
   const FemLanesElements *elements;
   const FemLanesQuadratics *quadratics;
-  const FemModelBody *body;
+  const FemModelPart *part;
   const double *positions, *velocities; // of all vertices
 } FemAssemblyPack;
 
@@ -41,11 +41,11 @@ typedef struct FemAssembly {
   double *partial[2];    // sums of chunks of them                   (chunk_count)
 } FemAssembly;
 
-// All elements of bodies, which obstacles are not, that this rank has and whose body `takes` accepts (NULL:
+// All elements of bodies, which obstacles are not, that this rank has and whose part `takes` accepts (NULL:
 // all). A zeroed assembly, and one whose creation failed, can be destroyed.
 // Must not be moved once it is created.
 Status fem_assembly_create(FemAssembly *assembly, const FemModel *model,
-                           bool (*takes)(const FemModelBody *body));
+                           bool (*takes)(const FemModelPart *part));
 // Takes the packs of another assembly of the same model, which lives as long, if it has the same elements.
 void fem_assembly_borrow(FemAssembly *assembly, FemAssembly *from);
 void fem_assembly_destroy(FemAssembly *assembly);

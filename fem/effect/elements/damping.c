@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Stiffness-proportional damping of the strain rate; rigid motion goes undamped (fem/element/element.h). Only
-// bodies with β > 0 or a viscosity take part.
+// materials with β > 0 or a viscosity take part.
 #include "base/memory.h"
 #include "fem/effect/elements/assembly.h"
 #include "fem/effect/system.h"
 
-static bool is_wanted(const FemSceneDef *scene) {
-  if (scene->is_static) return false;
-  for (int b = 0; b < scene->body_count; b++) {
-    const FemMaterial *material = &scene->bodies[b].material;
-    double beta = material->damping >= 0 ? material->damping : scene->stiffness_damping;
-    if (beta > 0 || material->viscosity > 0 || material->bulk_viscosity > 0) return true;
-  }
-  return false;
+static bool is_viscous(const FemMaterial *material) {
+  return material->damping > 0 || material->viscosity > 0 || material->bulk_viscosity > 0;
 }
 
-static bool is_damped(const FemModelBody *body) {
-  return body->damping > 0 || body->material.viscosity > 0 || body->material.bulk_viscosity > 0;
+// By the scene's β.
+static bool may_be_damped(const FemMaterial *material) {
+  return material->damping < 0 || is_viscous(material);
+}
+
+static bool is_wanted(const FemSceneDef *scene) {
+  if (scene->is_static) return false;
+  return fem_scene_has_material(scene, scene->stiffness_damping > 0 ? may_be_damped : is_viscous);
+}
+
+static bool is_damped(const FemModelPart *part) {
+  return part->damping > 0 || part->material.viscosity > 0 || part->material.bulk_viscosity > 0;
 }
 
 static void destroy(void *self) {
@@ -56,40 +60,40 @@ static Status couple(void *self, const FemState *state, FemPattern *pattern, int
 }
 
 static void pack_force(const FemAssemblyPack *pack, FemLanesRow *force) {
-  const FemModelBody *body = pack->body;
-  pack->lanes->damping_force(&body->local, body->damping, pack->elements, pack->positions, pack->velocities,
+  const FemModelPart *part = pack->part;
+  pack->lanes->damping_force(&part->local, part->damping, pack->elements, pack->positions, pack->velocities,
                              force);
 }
 
 static void pack_matrix(const FemAssemblyPack *pack, double stiffness_scale, double damping_scale,
                         FemLanesRow *matrix) {
-  const FemModelBody *body = pack->body;
-  pack->lanes->damping_matrix(&body->local, body->damping, pack->elements, pack->positions, pack->velocities,
+  const FemModelPart *part = pack->part;
+  pack->lanes->damping_matrix(&part->local, part->damping, pack->elements, pack->positions, pack->velocities,
                               stiffness_scale, damping_scale, matrix);
 }
 
 static void quadratic_force(const FemAssemblyPack *pack, FemLanesRow *force) {
-  const FemModelBody *body = pack->body;
-  pack->lanes->quadratic_damping_force(&body->local, body->damping, pack->quadratics, pack->positions,
+  const FemModelPart *part = pack->part;
+  pack->lanes->quadratic_damping_force(&part->local, part->damping, pack->quadratics, pack->positions,
                                        pack->velocities, force);
 }
 
 static void quadratic_matrix(const FemAssemblyPack *pack, double stiffness_scale, double damping_scale,
                              FemLanesRow *matrix) {
-  const FemModelBody *body = pack->body;
-  pack->lanes->quadratic_damping_matrix(&body->local, body->damping, pack->quadratics, pack->positions,
+  const FemModelPart *part = pack->part;
+  pack->lanes->quadratic_damping_matrix(&part->local, part->damping, pack->quadratics, pack->positions,
                                         pack->velocities, stiffness_scale, damping_scale, matrix);
 }
 
 static void pack_power(const FemAssemblyPack *pack, FemLanesRow power) {
-  const FemModelBody *body = pack->body;
-  pack->lanes->damping_power(&body->local, body->damping, pack->elements, pack->positions, pack->velocities,
+  const FemModelPart *part = pack->part;
+  pack->lanes->damping_power(&part->local, part->damping, pack->elements, pack->positions, pack->velocities,
                              power);
 }
 
 static void quadratic_power(const FemAssemblyPack *pack, FemLanesRow power) {
-  const FemModelBody *body = pack->body;
-  pack->lanes->quadratic_damping_power(&body->local, body->damping, pack->quadratics, pack->positions,
+  const FemModelPart *part = pack->part;
+  pack->lanes->quadratic_damping_power(&part->local, part->damping, pack->quadratics, pack->positions,
                                        pack->velocities, power);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elasticity: every element's stored energy by its body's law.
+// Elasticity: every element's stored energy by its material's law.
 #include "base/memory.h"
 #include "fem/effect/elements/assembly.h"
 
@@ -36,37 +36,37 @@ static Status couple(void *self, const FemState *state, FemPattern *pattern, int
   return fem_assembly_couple(self, pattern, has_grown);
 }
 
-static FemQuadraticLaw law_of(const FemModelBody *body) {
-  return (FemQuadraticLaw){&body->local, body->bulk};
+static FemQuadraticLaw law_of(const FemModelPart *part) {
+  return (FemQuadraticLaw){&part->local, part->bulk};
 }
 
 static void pack_force(const FemAssemblyPack *pack, FemLanesRow *force) {
-  pack->lanes->force(&pack->body->local, pack->elements, pack->positions, force);
+  pack->lanes->force(&pack->part->local, pack->elements, pack->positions, force);
 }
 
 static void pack_matrix(const FemAssemblyPack *pack, double stiffness_scale, double damping_scale,
                         FemLanesRow *matrix) {
   (void)damping_scale;
-  pack->lanes->matrix(&pack->body->local, pack->elements, pack->positions, stiffness_scale, matrix);
+  pack->lanes->matrix(&pack->part->local, pack->elements, pack->positions, stiffness_scale, matrix);
 }
 
 static void quadratic_force(const FemAssemblyPack *pack, FemLanesRow *force) {
-  pack->lanes->quadratic_force(law_of(pack->body), pack->quadratics, pack->positions, force);
+  pack->lanes->quadratic_force(law_of(pack->part), pack->quadratics, pack->positions, force);
 }
 
 static void quadratic_matrix(const FemAssemblyPack *pack, double stiffness_scale, double damping_scale,
                              FemLanesRow *matrix) {
   (void)damping_scale;
-  pack->lanes->quadratic_matrix(law_of(pack->body), pack->quadratics, pack->positions, stiffness_scale,
+  pack->lanes->quadratic_matrix(law_of(pack->part), pack->quadratics, pack->positions, stiffness_scale,
                                 matrix);
 }
 
 static void pack_energy(const FemAssemblyPack *pack, FemLanesRow energy) {
-  pack->lanes->energy(&pack->body->local, pack->elements, pack->positions, energy);
+  pack->lanes->energy(&pack->part->local, pack->elements, pack->positions, energy);
 }
 
 static void quadratic_energy(const FemAssemblyPack *pack, FemLanesRow energy) {
-  pack->lanes->quadratic_energy(law_of(pack->body), pack->quadratics, pack->positions, energy);
+  pack->lanes->quadratic_energy(law_of(pack->part), pack->quadratics, pack->positions, energy);
 }
 
 static const FemAssemblyKernels kernels = {pack_force,       quadratic_force, pack_matrix,
@@ -98,7 +98,7 @@ static size_t bytes(const void *self) {
 
 const FemEffectOps fem_effect_elasticity = {
     .name = "elasticity",
-    .help = "the elements' elastic forces, by each body's material",
+    .help = "the elements' elastic forces, by the materials of bodies",
     .is_divided = true,
     .is_wanted = is_wanted,
     .create = create,

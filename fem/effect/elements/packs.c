@@ -29,16 +29,16 @@ typedef struct Order {
   bool is_quadratic;
   int node_count;
   const int *nodes; // of the model's elements, borrowed          (…, node_count)
-  Place *places;    // elements by body, then along the curve   (count)
+  Place *places;    // elements by part, then along the curve   (count)
   int count;
-  int *begin, *body; // of each chunk in `places`                (chunk_count + 1)
+  int *begin, *part; // of each chunk in `places`                (chunk_count + 1)
   int *colour;       // of each chunk                            (chunk_count)
   ColourSet *used;   // around each vertex                       (vertex_count)
   int chunk_count, colour_count;
 } Order;
 
 static void free_order(Order *order) {
-  memory_free(order->places), memory_free(order->begin), memory_free(order->body);
+  memory_free(order->places), memory_free(order->begin), memory_free(order->part);
   memory_free(order->colour), memory_free(order->used);
 }
 
@@ -75,8 +75,10 @@ static int compare(const void *left, const void *right) {
   return a->element < b->element ? -1 : a->element > b->element;
 }
 
-static void place_body(Order *order, const FemModelBody *body) {
+static void place_part(Order *order, int part) {
   const FemModel *model = order->model;
+  const FemModelBody *body = &model->bodies[model->parts[part].body];
+  const int *part_of = order->is_quadratic ? model->quadratic_part : model->tet_part;
   double low[3] = {INFINITY, INFINITY, INFINITY}, size = 0;
   for (int v = body->vertex_begin; v < body->vertex_end; v++)
     for (int c = 0; c < 3; c++) low[c] = fmin(low[c], model->rest[3 * (size_t)v + (size_t)c]);
@@ -86,31 +88,31 @@ static void place_body(Order *order, const FemModelBody *body) {
   int begin = order->is_quadratic ? body->quadratic_begin : body->tet_begin;
   int end = order->is_quadratic ? body->quadratic_end : body->tet_end;
   for (int e = begin; e < end; e++)
-    if (fem_share_has(order->model->share, order->node_count, nodes_of(order, e)))
+    if (part_of[e] == part && fem_share_has(order->model->share, order->node_count, nodes_of(order, e)))
       order->places[order->count++] = (Place){code_of(order, low, size / 0x1fffff, e), e};
   qsort(order->places + first, (size_t)(order->count - first), sizeof *order->places, compare);
 }
 
-static bool is_taken(const Order *order, const FemModelBody *body, bool (*takes)(const FemModelBody *body)) {
-  bool is_quadratic = body->element == FEM_ELEMENT_QUADRATIC;
-  return !body->is_obstacle && is_quadratic == order->is_quadratic && (!takes || takes(body));
+static bool is_taken(const Order *order, const FemModelPart *part, bool (*takes)(const FemModelPart *part)) {
+  bool is_quadratic = order->model->bodies[part->body].element == FEM_ELEMENT_QUADRATIC;
+  return is_quadratic == order->is_quadratic && (!takes || takes(part));
 }
 
-// Of the elements of a body in each of its chunks, whole packs.
+// Of the elements of a part in each of its chunks, whole packs.
 static int even_size(int count) {
   int packs = (count + FEM_LANES - 1) / FEM_LANES, chunks = (packs + CHUNK_PACKS - 1) / CHUNK_PACKS;
   return chunks > 0 ? (packs + chunks - 1) / chunks * FEM_LANES : CHUNK;
 }
 
-static void cut_chunks(Order *order, bool (*takes)(const FemModelBody *body)) {
+static void cut_chunks(Order *order, bool (*takes)(const FemModelPart *part)) {
   const FemModel *model = order->model;
-  for (int b = 0; b < model->body_count; b++) {
-    if (!is_taken(order, &model->bodies[b], takes)) continue;
+  for (int p = 0; p < model->part_count; p++) {
+    if (!is_taken(order, &model->parts[p], takes)) continue;
     int first = order->count;
-    place_body(order, &model->bodies[b]);
+    place_part(order, p);
     int size = even_size(order->count - first);
     for (int at = first; at < order->count; at += size) {
-      order->body[order->chunk_count] = b;
+      order->part[order->chunk_count] = p;
       order->begin[order->chunk_count++] = at;
     }
   }
@@ -195,9 +197,9 @@ static Status make_room(FemPacks *packs, size_t most) {
 static Status fill(FemPacks *packs, const Order *order) {
   size_t chunks = (size_t)order->chunk_count;
   packs->chunk_begin = memory_zeroed(chunks + 1, sizeof *packs->chunk_begin);
-  packs->chunk_body = memory_zeroed(chunks, sizeof *packs->chunk_body);
+  packs->chunk_part = memory_zeroed(chunks, sizeof *packs->chunk_part);
   packs->colour_begin = memory_zeroed((size_t)order->colour_count + 1, sizeof *packs->colour_begin);
-  if (!packs->chunk_begin || !packs->chunk_body || !packs->colour_begin)
+  if (!packs->chunk_begin || !packs->chunk_part || !packs->colour_begin)
     return status_no_memory("the elements in packs");
   TRY(make_room(packs, (size_t)order->count / FEM_LANES + chunks));
   packs->element_count = order->count;
@@ -206,7 +208,7 @@ static Status fill(FemPacks *packs, const Order *order) {
     packs->colour_begin[colour] = packs->chunk_count;
     for (int chunk = 0; chunk < order->chunk_count; chunk++) {
       if (order->colour[chunk] != colour) continue;
-      packs->chunk_body[packs->chunk_count] = order->body[chunk];
+      packs->chunk_part[packs->chunk_count] = order->part[chunk];
       packs->chunk_begin[packs->chunk_count++] = packs->pack_count;
       fill_chunk(packs, order, chunk);
     }
@@ -216,23 +218,23 @@ static Status fill(FemPacks *packs, const Order *order) {
   return STATUS_OK;
 }
 
-static Status make_order(Order *order, bool (*takes)(const FemModelBody *body)) {
+static Status make_order(Order *order, bool (*takes)(const FemModelPart *part)) {
   const FemModel *model = order->model;
   size_t most = (size_t)(order->is_quadratic ? model->quadratic_count : model->tet_count);
-  size_t chunks = most / CHUNK + (size_t)model->body_count;
+  size_t chunks = most / CHUNK + (size_t)model->part_count;
   order->places = memory_zeroed(most, sizeof *order->places);
   order->begin = memory_zeroed(chunks + 1, sizeof *order->begin);
-  order->body = memory_zeroed(chunks, sizeof *order->body);
+  order->part = memory_zeroed(chunks, sizeof *order->part);
   order->colour = memory_zeroed(chunks, sizeof *order->colour);
   order->used = memory_zeroed((size_t)model->vertex_count, sizeof *order->used);
-  if (!order->places || !order->begin || !order->body || !order->colour || !order->used)
+  if (!order->places || !order->begin || !order->part || !order->colour || !order->used)
     return status_no_memory("the order of elements");
   cut_chunks(order, takes);
   return choose_colours(order);
 }
 
 Status fem_packs_create(FemPacks *packs, const FemModel *model, bool is_quadratic,
-                        bool (*takes)(const FemModelBody *body)) {
+                        bool (*takes)(const FemModelPart *part)) {
   *packs = (FemPacks){.is_quadratic = is_quadratic};
   Order order = {.model = model, .is_quadratic = is_quadratic};
   order.node_count = is_quadratic ? FEM_QUADRATIC_NODES : 4;
@@ -246,13 +248,13 @@ Status fem_packs_create(FemPacks *packs, const FemModel *model, bool is_quadrati
 void fem_packs_destroy(FemPacks *packs) {
   memory_free(packs->packs), memory_free(packs->slots), memory_free(packs->chunk_begin);
   memory_free(packs->quadratics), memory_free(packs->half_slots);
-  memory_free(packs->chunk_body), memory_free(packs->colour_begin);
+  memory_free(packs->chunk_part), memory_free(packs->colour_begin);
   *packs = (FemPacks){0};
 }
 
 size_t fem_packs_bytes(const FemPacks *packs) {
   return memory_held(packs->packs) + memory_held(packs->slots) + memory_held(packs->quadratics) +
-         memory_held(packs->half_slots) + memory_held(packs->chunk_begin) + memory_held(packs->chunk_body) +
+         memory_held(packs->half_slots) + memory_held(packs->chunk_begin) + memory_held(packs->chunk_part) +
          memory_held(packs->colour_begin);
 }
 

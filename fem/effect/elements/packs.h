@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The linear or the quadratic elements of a model in packs for vector lanes (fem/lanes/lanes.h), so ordered
-// that what is near in space is near in memory: along a Morton curve, in chunks of some packs of one body.
-// Chunks are coloured: those of a colour share no vertex and may be added at the same time. Within a chunk
-// elements are added one after another, so every sum has a fixed order.
+// that what is near in space is near in memory: along a Morton curve, in chunks of some packs of one part of
+// a body. Chunks are coloured: those of a colour share no vertex and may be added at the same time. Within a
+// chunk elements are added one after another, so every sum has a fixed order.
 #ifndef TETLAP_FEM_EFFECT_PACKS_H
 #define TETLAP_FEM_EFFECT_PACKS_H
 
@@ -23,14 +23,14 @@ typedef struct FemPacks {
   int (*half_slots)[FEM_LANES_HALF][FEM_LANES];
   long long layout;  // of the matrix that they are of; 0: not looked up
   int *chunk_begin;  // of each chunk in the packs            (chunk_count + 1)
-  int *chunk_body;   //                                       (chunk_count)
+  int *chunk_part;   //                                       (chunk_count)
   int *colour_begin; // of each colour among the chunks       (colour_count + 1)
 } FemPacks;
 
 // All elements of one kind of bodies, which obstacles are not, that this rank has and `takes` accepts (NULL:
 // all). A zeroed one, and one whose creation failed, can be destroyed.
 Status fem_packs_create(FemPacks *packs, const FemModel *model, bool is_quadratic,
-                        bool (*takes)(const FemModelBody *body));
+                        bool (*takes)(const FemModelPart *part));
 void fem_packs_destroy(FemPacks *packs);
 size_t fem_packs_bytes(const FemPacks *packs); // on the heap
 

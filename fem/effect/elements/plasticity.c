@@ -24,7 +24,7 @@ typedef struct Plastic {
   double alpha;     // accumulated plastic strain
 } Plastic;
 
-// A quadrature point of a plastic body.
+// A quadrature point of a plastic part.
 typedef struct Site {
   FemPoint point;
   const int *nodes; // of its element, borrowed from the model       (point.node_count)
@@ -33,7 +33,7 @@ typedef struct Site {
 
 typedef struct Plasticity {
   const FemModel *model; // borrowed
-  FemElement *elements;  // of linear bodies that are plastic        (element_count)
+  FemElement *elements;  // the linear ones that are plastic          (element_count)
   int element_count;
   Site *sites; //                                          (site_count)
   int site_count;
@@ -48,10 +48,12 @@ typedef struct Return {
   double n[9], along, across;
 } Return;
 
+static bool yields(const FemMaterial *material) {
+  return material->yield_stress > 0;
+}
+
 static bool is_wanted(const FemSceneDef *scene) {
-  for (int b = 0; b < scene->body_count; b++)
-    if (scene->bodies[b].material.yield_stress > 0) return true;
-  return false;
+  return fem_scene_has_material(scene, yields);
 }
 
 static void destroy(void *self) {
@@ -81,27 +83,31 @@ static void add_quadratic(Plasticity *plasticity, int e, int tet) {
     add_site(plasticity, fem_quadratic_point(&model->quadratics[e], p), model->quadratic_nodes[e], tet + p);
 }
 
+static bool is_plastic(const FemModel *model, int part) {
+  return part >= 0 && yields(&model->parts[part].material);
+}
+
 static void list_sites(Plasticity *plasticity) {
   const FemModel *model = plasticity->model;
   for (int e = 0; e < model->tet_count; e++) plasticity->place[e] = -1;
   for (int b = 0; b < model->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
-    if (!(body->material.yield_stress > 0)) continue;
     bool is_quadratic = body->element == FEM_ELEMENT_QUADRATIC;
-    for (int e = body->tet_begin; e < body->tet_end && !is_quadratic; e++) add_tet(plasticity, e);
+    for (int e = body->tet_begin; e < body->tet_end && !is_quadratic; e++)
+      if (is_plastic(model, model->tet_part[e])) add_tet(plasticity, e);
     for (int e = body->quadratic_begin; e < body->quadratic_end; e++)
-      add_quadratic(plasticity, e, body->tet_begin + FEM_QUADRATIC_PARTS * (e - body->quadratic_begin));
+      if (is_plastic(model, model->quadratic_part[e]))
+        add_quadratic(plasticity, e, body->tet_begin + FEM_QUADRATIC_PARTS * (e - body->quadratic_begin));
   }
 }
 
+// Of linear ones.
 static size_t count_elements(const FemModel *model) {
-  int count = 0;
-  for (int b = 0; b < model->body_count; b++) {
-    const FemModelBody *body = &model->bodies[b];
-    if (body->material.yield_stress > 0 && body->element != FEM_ELEMENT_QUADRATIC)
-      count += body->tet_end - body->tet_begin;
-  }
-  return (size_t)count;
+  size_t count = 0;
+  for (int e = 0; e < model->tet_count; e++)
+    count += is_plastic(model, model->tet_part[e]) &&
+             model->bodies[model->tet_body[e]].element != FEM_ELEMENT_QUADRATIC;
+  return count;
 }
 
 static Status create(void **self, const FemModel *model) {
@@ -123,7 +129,7 @@ static Status create(void **self, const FemModel *model) {
 
 static const FemMaterial *material_of(const Plasticity *plasticity, int site) {
   const FemModel *model = plasticity->model;
-  return &model->bodies[model->tet_body[plasticity->sites[site].tet]].material;
+  return &model->parts[model->tet_part[plasticity->sites[site].tet]].material;
 }
 
 // F and E = ½ (G + Gᵀ + Gᵀ G), G = F − I.

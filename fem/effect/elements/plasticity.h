@@ -5,8 +5,8 @@
 
 #include "fem/effect/state.h"
 
-// Adds the reduction of stress by the plastic strain of a tetrahedron at a state to its Cauchy stress [Pa] (xx,
-// yy, zz, xy, yz, xz): at the point near its corner, or the mean, as in fem/element/quadratic.h.
+// Adds the reduction of stress by the plastic strain of a tetrahedron at a state to its Cauchy stress [Pa]
+// (xx, yy, zz, xy, yz, xz): at the point near its corner, or the mean, as in fem/element/quadratic.h.
 void fem_effect_plasticity_add_stress(const void *self, int tet, const FemState *state, double stress[6]);
 
 #endif

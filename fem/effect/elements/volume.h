@@ -9,7 +9,8 @@
 // It is the average nodal pressure tetrahedron (Bonet and Burton 1998, Comm. Num. Meth. Eng. 14), stabilised
 // by what the elements keep (as Puso and Solberg 2006 do), for any law. Its vertices are those of the mesh,
 // so contact, loads and constraints are as for linear tetrahedra. The cost: a vertex couples with its
-// neighbours' neighbours.
+// neighbours' neighbours. Where materials meet, θ may jump: a vertex there is one for each, with the elements
+// of that material around it.
 #ifndef TETLAP_FEM_EFFECT_VOLUME_H
 #define TETLAP_FEM_EFFECT_VOLUME_H
 
@@ -20,14 +21,16 @@ typedef struct FemVolume {
   const FemModel *model; // borrowed
   int *tets;             // of nodal bodies                                      (tet_count)
   int tet_count;
-  FemElement *elements; // what is constant in those                           (tet_count)
-  int *vertices;        // of nodal bodies                                              (vertex_count)
-  int vertex_count;
+  FemElement *elements;          // what is constant in those                           (tet_count)
+  int *index;                    // of a tetrahedron of the model in `tets`             (model->tet_count)
+  int *parts;                    // of the model, by those vertices                     (vertex_count)
+  int vertex_count;              // of nodal bodies, once for each material
+  int (*corners)[4];             // of each tetrahedron among those vertices            (tet_count)
   int *tet_begin, *tet_list;     // positions in `tets` around each vertex       (vertex_count + 1)
-  int *patch_begin, *patch_list; // vertices of those, itself included           (vertex_count + 1)
-  double *vertex_volume;         // V_a [m³], by the model's vertices            (model->vertex_count)
+  int *patch_begin, *patch_list; // the model's vertices of those                (vertex_count + 1)
+  double *vertex_volume;         // V_a [m³]                                     (vertex_count)
   double *tet_theta;             // θ_e                                          (tet_count)
-  double *vertex_theta;          // θ_a, by the model's vertices                 (model->vertex_count)
+  double *vertex_theta;          // θ_a                                          (vertex_count)
   double *tet_gradient;          // V_e/4 ∂θ_e/∂x                                (tet_count, 12)
   double *row;                   // ∂θ_a/∂x over one patch                       (largest patch, 3)
   int *place;                    // of a vertex in the patch at hand             (model->vertex_count)

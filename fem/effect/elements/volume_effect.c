@@ -58,7 +58,7 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
 void fem_effect_volume_add_stress(const void *self, int tet, const double x[12], double stress[6]) {
   const FemVolume *volume = self;
   const FemModel *model = volume->model;
-  FemMaterialLaw law = model->bodies[model->tet_body[tet]].material.law;
+  FemMaterialLaw law = fem_model_law(model, tet);
   double F[9], gradient[9], one[6], pressure = fem_volume_pressure(volume, tet);
   const FemElement element = fem_model_element(model, tet);
   fem_element_deformation(&element, x, F);

@@ -82,22 +82,37 @@ static void free_elements(Elements *elements) {
   gmsh.Free(elements->tags), gmsh.Free(elements->nodes);
 }
 
-// The node numbers of the file, sorted, with their place among the nodes.
-typedef struct NodeIndex {
+// A number of the file, and the place among the nodes or elements that it has.
+typedef struct TagPlace {
   size_t tag;
   int place;
-} NodeIndex;
+} TagPlace;
 
 typedef struct Nodes {
   size_t *tags; // gmsh's
   double *positions;
   int count;
-  NodeIndex *index; // ours
+  TagPlace *places; // ours, sorted
 } Nodes;
 
 static int compare_tag(const void *left, const void *right) {
-  const NodeIndex *a = left, *b = right;
+  const TagPlace *a = left, *b = right;
   return (a->tag > b->tag) - (a->tag < b->tag);
+}
+
+// Sorted; NULL: no memory.
+static TagPlace *sort_tags(const size_t *tags, size_t count) {
+  TagPlace *places = memory_zeroed(count, sizeof *places);
+  for (size_t k = 0; places && k < count; k++) places[k] = (TagPlace){tags[k], (int)k};
+  if (places) qsort(places, count, sizeof *places, compare_tag);
+  return places;
+}
+
+// −1: there is no such number.
+static int find_place(const TagPlace *places, size_t count, size_t tag) {
+  TagPlace wanted = {tag, 0};
+  const TagPlace *found = bsearch(&wanted, places, count, sizeof wanted, compare_tag);
+  return found ? found->place : -1;
 }
 
 static Status get_nodes(Nodes *nodes) {
@@ -113,23 +128,17 @@ static Status get_nodes(Nodes *nodes) {
     return status_fail(STATUS_INPUT, "%zu vertices are more than the %d that can be numbered", count,
                        FEM_MESH_MAX_VERTICES);
   nodes->count = (int)count;
-  nodes->index = memory_zeroed(count, sizeof *nodes->index);
-  if (!nodes->index) return status_no_memory("the vertex numbers of a mesh");
-  for (int v = 0; v < nodes->count; v++) nodes->index[v] = (NodeIndex){nodes->tags[v], v};
-  qsort(nodes->index, count, sizeof *nodes->index, compare_tag);
-  return STATUS_OK;
+  nodes->places = sort_tags(nodes->tags, count);
+  return nodes->places ? STATUS_OK : status_no_memory("the vertex numbers of a mesh");
 }
 
 static void free_nodes(Nodes *nodes) {
   gmsh.Free(nodes->tags), gmsh.Free(nodes->positions);
-  memory_free(nodes->index);
+  memory_free(nodes->places);
 }
 
-// −1: there is no such node.
 static int place_of(const Nodes *nodes, size_t tag) {
-  NodeIndex wanted = {tag, 0};
-  const NodeIndex *found = bsearch(&wanted, nodes->index, (size_t)nodes->count, sizeof wanted, compare_tag);
-  return found ? found->place : -1;
+  return find_place(nodes->places, (size_t)nodes->count, tag);
 }
 
 // Elements (count, corner_count) as places of their nodes.
@@ -256,18 +265,27 @@ static Status take_tets(FemMeshSource *source, const Nodes *nodes, const Element
                                   : take_second_order(source, nodes, tets);
 }
 
-// Adds nodes to the group of that name, which is made if it is new: "top" may be a surface and a curve.
-static Status add_to_group(FemMeshSource *source, const Nodes *nodes, const char *name, const size_t *tags,
-                           size_t count) {
+// What groups are made of.
+typedef struct Content {
+  const Nodes *nodes;
+  const TagPlace *tets; // sorted (tet_count)
+  size_t tet_count;
+} Content;
+
+// The group of that name, which is made if it is new: "top" may be a surface and a curve. NULL: no memory.
+static FemMeshGroup *take_group(FemMeshSource *source, const char *name) {
   FemMeshGroup *group = source->groups;
   for (int g = 0; g < source->group_count && strcmp(group->name, name) != 0; g++) group++;
-  if (group == source->groups + source->group_count) {
-    group->name = memory_copy(name, strlen(name) + 1, 1);
-    if (!group->name) return status_no_memory("the name of a group");
-    source->group_count++;
-  }
+  if (group < source->groups + source->group_count) return group;
+  group->name = memory_copy(name, strlen(name) + 1, 1);
+  if (!group->name) return NULL;
+  source->group_count++;
+  return group;
+}
+
+static Status add_nodes(FemMeshGroup *group, const Nodes *nodes, const size_t *tags, size_t count) {
   if (count > (size_t)(INT_MAX - group->vertex_count))
-    return status_fail(STATUS_INPUT, "the group '%s' has more nodes than can be numbered", name);
+    return status_fail(STATUS_INPUT, "the group '%s' has more nodes than can be numbered", group->name);
   size_t capacity = (size_t)group->vertex_count;
   if (!memory_reserve((void **)&group->vertices, &capacity, capacity + count, sizeof(int)))
     return status_no_memory("the vertices of a group");
@@ -278,21 +296,22 @@ static Status add_to_group(FemMeshSource *source, const Nodes *nodes, const char
   return STATUS_OK;
 }
 
-static Status take_physical_group(FemMeshSource *source, const Nodes *nodes, const char *name, int dimension,
-                                  int tag) {
-  size_t *tags = NULL, count = 0, position_count = 0;
-  double *positions = NULL;
-  int error = 0;
-  gmsh.ModelMeshGetNodesForPhysicalGroup(dimension, tag, &tags, &count, &positions, &position_count, &error);
-  Status status =
-      error ? fail("list the nodes of a physical group") : add_to_group(source, nodes, name, tags, count);
-  gmsh.Free(tags), gmsh.Free(positions);
-  return status;
+static Status add_tets(FemMeshGroup *group, const Content *content, const size_t *tags, size_t count) {
+  if (count > (size_t)(INT_MAX - group->tet_count))
+    return status_fail(STATUS_INPUT, "the group '%s' has more elements than can be numbered", group->name);
+  size_t capacity = (size_t)group->tet_count;
+  if (!memory_reserve((void **)&group->tets, &capacity, capacity + count, sizeof(int)))
+    return status_no_memory("the elements of a group");
+  for (size_t k = 0; k < count; k++) {
+    int place = find_place(content->tets, content->tet_count, tags[k]);
+    if (place >= 0) group->tets[group->tet_count++] = place;
+  }
+  return STATUS_OK;
 }
 
-// The nodes of an entity's elements, those on its boundary included.
-static Status take_entity(FemMeshSource *source, const Nodes *nodes, const char *name, int dimension,
-                          int tag) {
+// The nodes of an entity's elements, those on its boundary included, where `nodes_too`, and its tetrahedra.
+static Status add_entity(FemMeshGroup *group, const Content *content, int dimension, int tag,
+                         bool nodes_too) {
   int *types = NULL, error = 0;
   size_t type_count = 0, **element_tags = NULL, *element_counts = NULL, list_count = 0;
   size_t **node_tags = NULL, *node_counts = NULL, node_list_count = 0;
@@ -300,17 +319,44 @@ static Status take_entity(FemMeshSource *source, const Nodes *nodes, const char 
                             &node_counts, &node_list_count, dimension, tag, &error);
   Status status = error ? fail("list the elements of an entity") : STATUS_OK;
   for (size_t k = 0; k < node_list_count; k++) {
-    if (status == STATUS_OK) status = add_to_group(source, nodes, name, node_tags[k], node_counts[k]);
+    if (status == STATUS_OK && nodes_too)
+      status = add_nodes(group, content->nodes, node_tags[k], node_counts[k]);
     gmsh.Free(node_tags[k]);
   }
-  for (size_t k = 0; k < list_count; k++) gmsh.Free(element_tags[k]);
+  for (size_t k = 0; k < list_count; k++) {
+    if (status == STATUS_OK && dimension == 3)
+      status = add_tets(group, content, element_tags[k], element_counts[k]);
+    gmsh.Free(element_tags[k]);
+  }
   gmsh.Free(types), gmsh.Free(element_tags), gmsh.Free(element_counts), gmsh.Free(node_tags),
       gmsh.Free(node_counts);
   return status;
 }
 
+static Status add_volumes(FemMeshGroup *group, const Content *content, int tag) {
+  int *entities = NULL, error = 0;
+  size_t count = 0;
+  gmsh.ModelGetEntitiesForPhysicalGroup(3, tag, &entities, &count, &error);
+  Status status = error ? fail("list the volumes of a physical group") : STATUS_OK;
+  for (size_t k = 0; k < count && status == STATUS_OK; k++)
+    status = add_entity(group, content, 3, entities[k], false);
+  gmsh.Free(entities);
+  return status;
+}
+
+static Status add_physical_group(FemMeshGroup *group, const Content *content, int dimension, int tag) {
+  size_t *tags = NULL, count = 0, position_count = 0;
+  double *positions = NULL;
+  int error = 0;
+  gmsh.ModelMeshGetNodesForPhysicalGroup(dimension, tag, &tags, &count, &positions, &position_count, &error);
+  Status status =
+      error ? fail("list the nodes of a physical group") : add_nodes(group, content->nodes, tags, count);
+  gmsh.Free(tags), gmsh.Free(positions);
+  return status == STATUS_OK && dimension == 3 ? add_volumes(group, content, tag) : status;
+}
+
 // One group each for (dimension, tag) pairs, by their names or "surface_7".
-static Status take_group_list(FemMeshSource *source, const Nodes *nodes, const int *pairs, size_t count,
+static Status take_group_list(FemMeshSource *source, const Content *content, const int *pairs, size_t count,
                               bool are_physical) {
   static const char *const kinds[] = {"point", "curve", "surface", "volume"};
   source->groups = memory_zeroed(count, sizeof *source->groups);
@@ -321,15 +367,17 @@ static Status take_group_list(FemMeshSource *source, const Nodes *nodes, const i
     snprintf(name, sizeof name, "%s_%d", kinds[dimension], tag);
     if (are_physical) gmsh.ModelGetPhysicalName(dimension, tag, &given, &error);
     const char *chosen = given && given[0] ? given : name;
-    Status status = are_physical ? take_physical_group(source, nodes, chosen, dimension, tag)
-                                 : take_entity(source, nodes, chosen, dimension, tag);
+    FemMeshGroup *group = take_group(source, chosen);
+    Status status = !group         ? status_no_memory("the name of a group")
+                    : are_physical ? add_physical_group(group, content, dimension, tag)
+                                   : add_entity(group, content, dimension, tag, true);
     gmsh.Free(given);
     TRY(status);
   }
   return STATUS_OK;
 }
 
-static Status take_groups(FemMeshSource *source, const Nodes *nodes) {
+static Status list_groups(FemMeshSource *source, const Content *content) {
   int *pairs = NULL, error = 0;
   size_t count = 0;
   gmsh.ModelGetPhysicalGroups(&pairs, &count, -1, &error);
@@ -339,8 +387,16 @@ static Status take_groups(FemMeshSource *source, const Nodes *nodes) {
     gmsh.ModelGetEntities(&pairs, &count, -1, &error);
   }
   Status status =
-      error ? fail("list the groups") : take_group_list(source, nodes, pairs, count / 2, are_physical);
+      error ? fail("list the groups") : take_group_list(source, content, pairs, count / 2, are_physical);
   gmsh.Free(pairs);
+  return status;
+}
+
+static Status take_groups(FemMeshSource *source, const Nodes *nodes, const Elements *tets) {
+  TagPlace *places = sort_tags(tets->tags, tets->count);
+  if (!places) return status_no_memory("the elements of a mesh");
+  Status status = list_groups(source, &(Content){nodes, places, tets->count});
+  memory_free(places);
   return status;
 }
 
@@ -352,7 +408,7 @@ static Status take_mesh(FemMeshSource *source, bool has_groups) {
   if (status == STATUS_OK) status = get_nodes(&nodes);
   if (status == STATUS_OK) status = get_elements(&tets, type);
   if (status == STATUS_OK) status = take_tets(source, &nodes, &tets, type);
-  if (status == STATUS_OK && has_groups) status = take_groups(source, &nodes);
+  if (status == STATUS_OK && has_groups) status = take_groups(source, &nodes, &tets);
   free_elements(&tets);
   free_nodes(&nodes);
   return status;

@@ -21,6 +21,7 @@
   FUNCTION(ModelGeoSynchronize)                                                                              \
   FUNCTION(ModelGetBoundingBox)                                                                              \
   FUNCTION(ModelGetEntities)                                                                                 \
+  FUNCTION(ModelGetEntitiesForPhysicalGroup)                                                                 \
   FUNCTION(ModelGetPhysicalGroups)                                                                           \
   FUNCTION(ModelGetPhysicalName)                                                                             \
   FUNCTION(ModelMeshClassifySurfaces)                                                                        \

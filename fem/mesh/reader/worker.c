@@ -15,7 +15,7 @@
 #include "base/memory.h"
 
 // What goes through the pipe: the head, then the message or the arrays in the order of FemMeshSource, then
-// for each group its size, name and vertices.
+// for each group its sizes, name, vertices and tetrahedra.
 typedef struct Head {
   int status;
   int message_size;
@@ -24,7 +24,7 @@ typedef struct Head {
 } Head;
 
 typedef struct GroupHead {
-  int name_size, vertex_count;
+  int name_size, vertex_count, tet_count;
 } GroupHead;
 
 static bool send(int pipe, const void *data, size_t size) {
@@ -46,9 +46,10 @@ static bool send_source(int pipe, const FemMeshSource *source) {
             (!source->middles || send(pipe, source->middles, tets * sizeof *source->middles));
   for (int g = 0; ok && g < source->group_count; g++) {
     const FemMeshGroup *group = &source->groups[g];
-    GroupHead head = {(int)strlen(group->name) + 1, group->vertex_count};
+    GroupHead head = {(int)strlen(group->name) + 1, group->vertex_count, group->tet_count};
     ok = send(pipe, &head, sizeof head) && send(pipe, group->name, (size_t)head.name_size) &&
-         send(pipe, group->vertices, (size_t)head.vertex_count * sizeof(int));
+         send(pipe, group->vertices, (size_t)head.vertex_count * sizeof(int)) &&
+         send(pipe, group->tets, (size_t)head.tet_count * sizeof(int));
   }
   return ok;
 }
@@ -125,6 +126,8 @@ static Receipt receive_group(int pipe, FemMeshGroup *group) {
   if (receipt == RECEIVED)
     receipt = receive_array(pipe, &group->vertices, (size_t)head.vertex_count, sizeof(int));
   if (receipt == RECEIVED) group->vertex_count = head.vertex_count;
+  if (receipt == RECEIVED) receipt = receive_array(pipe, &group->tets, (size_t)head.tet_count, sizeof(int));
+  if (receipt == RECEIVED) group->tet_count = head.tet_count;
   return receipt;
 }
 

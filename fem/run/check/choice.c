@@ -39,8 +39,8 @@ static double equivalent_cube(const FemModel *model, const FemNumbering *now) {
 }
 
 static bool is_nearly_incompressible(const FemModel *model) {
-  for (int b = 0; b < model->body_count; b++)
-    if (!model->bodies[b].is_obstacle && model->bodies[b].material.poisson > SOFTEST_POISSON) return true;
+  for (int p = 0; p < model->part_count; p++)
+    if (model->parts[p].material.poisson > SOFTEST_POISSON) return true;
   return false;
 }
 

@@ -7,6 +7,7 @@
 #include "base/ranks.h"
 #include "base/vec3.h"
 #include "fem/model/limits.h"
+#include "fem/model/parts.h"
 
 Status fem_balance_create(FemBalance *balance, int body_count) {
   balance->unbalanced = memory_zeroed((size_t)body_count, sizeof(double));
@@ -42,6 +43,10 @@ static void sum_up(FemBalance *balance, const FemModel *model, const FemPart *pa
   ranks()->sum(balance->needed, (size_t)model->body_count);
 }
 
+static double young_of(const FemMaterial *material) {
+  return material->young;
+}
+
 double fem_balance_excess(FemBalance *balance, const FemModel *model, const FemPart *part,
                           const double *forces, const double *pressing, const double *residual) {
   double worst = 0, gravity = model->scene->has_gravity ? vec3_length(vec3_at(model->scene->gravity)) : 0;
@@ -52,7 +57,8 @@ double fem_balance_excess(FemBalance *balance, const FemModel *model, const FemP
     if (pressing && !(gravity > 0)) weight = pressed_on(pressing, body);
     double needed = fmax(FEM_BALANCE * weight, FEM_BALANCE_OF_INERTIA * balance->needed[b]);
     // Without either: rounding of the force by which an element is strained by time.tolerance.
-    double least = FEM_ROUNDING * model->scene->tolerance * body->material.young * model->edge * model->edge;
+    double young = fem_model_parts_least(model, b, young_of);
+    double least = FEM_ROUNDING * model->scene->tolerance * young * model->edge * model->edge;
     double excess = balance->unbalanced[b] / fmax(needed, least);
     if (!(excess <= worst)) worst = isnan(excess) ? INFINITY : excess;
   }

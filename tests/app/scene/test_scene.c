@@ -125,6 +125,25 @@ static void check_loads(const FemBodyDef *body) {
   ck_assert_int_eq(loads[6].kind, FEM_LOAD_EXTERNAL);
 }
 
+static void check_parts(const FemBodyDef *body) {
+  ck_assert_int_eq(body->part_count, 4);
+  const FemPartDef *parts = body->parts;
+  const FemSelectKind kinds[] = {FEM_SELECT_GROUP, FEM_SELECT_BOX, FEM_SELECT_HALFSPACE, FEM_SELECT_RADIUS};
+  for (int i = 0; i < 4; i++) {
+    ck_assert_int_eq(parts[i].select.kind, kinds[i]);
+    ck_assert_double_eq(parts[i].material.young, (7 + i) * 1e5);
+    ck_assert_int_gt(parts[i].select.place.line, 0);
+  }
+  ck_assert_str_eq(parts[0].select.group, "core");
+  ck_assert_int_eq(parts[0].material.law, FEM_MATERIAL_STVK);
+  ck_assert_double_eq(parts[0].material.yield_stress, 3e4);
+  ck_vector(parts[1].select.box_max, 1, 1, 2);
+  ck_vector(parts[2].select.normal, 0, 0, -1);
+  ck_assert_double_eq(parts[3].select.radius_max, 0.5);
+  ck_assert_double_eq(parts[3].material.mooney, 0.3);
+  ck_assert_double_lt(parts[3].material.damping, 0);
+}
+
 static void check_upper(const FemBodyDef *body) {
   ck_assert_str_eq(body->name, "upper-2");
   ck_assert_ptr_null(body->mesh_path);
@@ -141,6 +160,7 @@ static void check_upper(const FemBodyDef *body) {
   ck_vector(body->material.fibre_direction, 0, 1, 1);
   ck_assert(body->material.fibres_buckle);
   ck_assert_double_lt(body->material.damping, 0); // the scene's
+  check_parts(body);
 }
 
 static void check_obstacles(const FemSceneDef *scene) {

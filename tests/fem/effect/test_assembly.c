@@ -146,7 +146,7 @@ START_TEST(elastic_forces_and_energy_are_the_sums_over_elements_of_bodies) {
   ck_assert_int_gt(model->tet_count, model->bodies[1].tet_end);
   for (int tet = 0; tet < model->bodies[1].tet_end; tet++) {
     double x[12], force[12];
-    const FemMaterial *material = &model->bodies[model->tet_body[tet]].material;
+    const FemMaterial *material = &model->parts[model->tet_part[tet]].material;
     gather(&scene, scene.x, tet, x);
     const FemElement element = fem_model_element(model, tet);
     fem_element_force(&element, material, x, force);
@@ -268,14 +268,14 @@ START_TEST(damping_adds_both_of_its_matrices) {
   FemMatrix expected;
   ck_assert_ok(fem_matrix_create(&expected, scene.pattern, scene.numbering.unknown_of_dof));
   for (int tet = 0; tet < model->bodies[0].tet_end; tet++) {
-    const FemModelBody *body = &model->bodies[0];
+    const FemModelPart *part = &model->parts[0];
     double x[12], v[12], matrix[144];
     gather(&scene, scene.x, tet, x);
     gather(&scene, scene.v, tet, v);
     const FemElement element = fem_model_element(model, tet);
-    fem_element_damping_matrix(&element, &body->material, body->damping, x, matrix);
+    fem_element_damping_matrix(&element, &part->material, part->damping, x, matrix);
     fem_matrix_add(&expected, 4, model->tets[tet], matrix, 7);
-    fem_element_damping_stiffness(&element, &body->material, body->damping, x, v, matrix);
+    fem_element_damping_stiffness(&element, &part->material, part->damping, x, v, matrix);
     fem_matrix_add(&expected, 4, model->tets[tet], matrix, 3);
   }
   FemState state = state_of(&scene);

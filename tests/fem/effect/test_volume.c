@@ -123,12 +123,12 @@ START_TEST(a_linear_field_passes_the_patch_test) {
                                    F[3 * i + 2] * model->rest[3 * a + 2];
   ck_assert_ok(fem_system_energy(&system, &state, &energy));
   double volume = model->bodies[0].mass;
-  ck_assert_near(energy.elastic, volume * fem_material_energy(&model->bodies[0].material, F), 1e-12 * volume);
+  ck_assert_near(energy.elastic, volume * fem_material_energy(&model->parts[0].material, F), 1e-12 * volume);
   // The forces are those of the stress on the surface: Σ −f X_x = V P e_x.
   double P[9], sum[3] = {0};
   int inside = 0;
   ck_assert_ok(fem_system_forces(&system, &state));
-  fem_material_stress(&model->bodies[0].material, F, P);
+  fem_material_stress(&model->parts[0].material, F, P);
   for (int a = 0; a < model->vertex_count; a++) {
     inside += !on_surface[a];
     for (int c = 0; c < 3; c++) {

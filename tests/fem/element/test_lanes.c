@@ -246,8 +246,8 @@ START_TEST(what_is_not_finite_stays_in_its_lane) {
 }
 END_TEST
 
-static bool has_density_two(const FemModelBody *body) {
-  return body->material.density == 2;
+static bool has_density_two(const FemModelPart *part) {
+  return part->material.density == 2;
 }
 
 // Two boxes and an obstacle with a mesh; the second box is taken by has_density_two.
@@ -292,7 +292,7 @@ static void check_packs(const FemPacks *packs, const FemModel *model, int begin,
         for (int l = 0; l < packs->packs[p].count; l++, total++) {
           const FemLanesElements *pack = &packs->packs[p];
           ck_assert_int_eq(seen[pack->tet[l]]++, 0);
-          ck_assert_int_eq(model->tet_body[pack->tet[l]], packs->chunk_body[c]);
+          ck_assert_int_eq(model->tet_part[pack->tet[l]], packs->chunk_part[c]);
           for (int a = 0; a < 4; a++) {
             int v = pack->node[a][l];
             ck_assert(a == 0 || v > pack->node[a - 1][l]);

@@ -134,6 +134,18 @@ START_TEST(two_blocks_agree_with_differences_of_runs) {
 END_TEST
 #undef BODY
 
+START_TEST(blocks_of_two_materials_agree_with_differences_of_runs) {
+  const Asked asked = {.scene = "gradient_layers",
+                       .of = {"displacement:upper:z", "force:lower:upper:z", "reaction:lower:fixed[0]:z",
+                              "reaction:upper:fixed[0]:x", "energy"},
+                       .by = {"bodies.lower.material.young", "bodies.lower.materials[0].young",
+                              "bodies.lower.materials[0].poisson", "bodies.lower.material.density",
+                              "bodies.lower.materials[0].density", "bodies.upper.materials[0].young",
+                              "bodies.upper.materials[1].mooney", "bodies.upper.materials[1].density"}};
+  check_against_runs(&asked);
+}
+END_TEST
+
 #define BODY "bodies.slab."
 START_TEST(a_driven_slab_upon_obstacles_agrees_with_differences_of_runs) {
   const Asked asked = {
@@ -399,6 +411,7 @@ int main(void) {
   TCase *test_case = tcase_create("gradient");
   tcase_add_checked_fixture(test_case, folder_make, folder_remove);
   tcase_add_test(test_case, two_blocks_agree_with_differences_of_runs);
+  tcase_add_test(test_case, blocks_of_two_materials_agree_with_differences_of_runs);
   tcase_add_test(test_case, a_driven_slab_upon_obstacles_agrees_with_differences_of_runs);
   tcase_add_test(test_case, quadratic_elements_between_moving_shapes_agree_with_differences_of_runs);
   tcase_add_test(test_case, a_chosen_stiffness_that_follows_agrees_with_differences_of_runs);

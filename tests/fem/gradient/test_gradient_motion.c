@@ -26,6 +26,19 @@ START_TEST(a_motion_that_ends_in_contact_agrees_with_differences_of_replays) {
 }
 END_TEST
 
+START_TEST(a_block_of_two_materials_agrees_with_differences_of_replays) {
+  const Asked asked = {
+      .scene = "gradient_motion",
+      .setting = "bodies.upper.materials=[{halfspace: {point: [0.09, 0, 0], normal: [-1, 0, 0]}, young: 3e5, "
+                 "poisson: 0.3, density: 2000}]",
+      .tolerance = 1e-6,
+      .of = {"displacement:upper:z", "energy"},
+      .by = {"bodies.upper.material.young", "bodies.upper.materials[0].young",
+             "bodies.upper.material.density", "bodies.upper.materials[0].density"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
 static void refuse(const char *override, const char *by, const char *why) {
   SceneRun scene;
   FemParameter parameter;
@@ -60,6 +73,7 @@ END_TEST
 int main(void) {
   TCase *test_case = tcase_create("gradient_motion");
   tcase_add_test(test_case, a_block_thrown_upon_a_shaken_one_agrees_with_differences_of_replays);
+  tcase_add_test(test_case, a_block_of_two_materials_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_motion_that_ends_in_contact_agrees_with_differences_of_replays);
   tcase_add_test(test_case, motions_without_a_gradient_are_refused_by_name);
   return suite_run("gradient_motion", test_case, 300);

@@ -53,6 +53,39 @@ START_TEST(physical_groups_become_vertex_groups) {
 }
 END_TEST
 
+// Two boxes that share a face, a physical volume each; a tetrahedron may have all its corners on that face's
+// rim, so groups of vertices alone could not tell.
+START_TEST(physical_volumes_hold_their_tetrahedra) {
+  const char *path = put("two.geo", "Point(1) = {0, 0, 0, 0.05};\n"
+                                    "Extrude {0.1, 0, 0} { Point{1}; }\nExtrude {0, 0.1, 0} { Curve{1}; }\n"
+                                    "a[] = Extrude {0, 0, 0.1} { Surface{5}; };\n"
+                                    "b[] = Extrude {0, 0, 0.05} { Surface{a[0]}; };\n"
+                                    "Physical Volume(\"core\") = {a[1]};\nPhysical Volume(\"shell\") = "
+                                    "{b[1]};\nPhysical Surface(\"between\") = {a[0]};\n");
+  FemMesh mesh;
+  ck_assert_ok(fem_mesh_read(&mesh, path, NULL, NULL));
+  const FemMeshGroup *core = group_of(&mesh, "core"), *shell = group_of(&mesh, "shell");
+  ck_assert_int_gt(core->tet_count, 0);
+  ck_assert_int_gt(shell->tet_count, 0);
+  ck_assert_int_eq(core->tet_count + shell->tet_count, mesh.tet_count);
+  ck_assert_int_eq(group_of(&mesh, "between")->tet_count, 0);
+  for (int k = 0; k < 2; k++) {
+    const FemMeshGroup *group = k ? shell : core;
+    for (int i = 0; i < group->tet_count; i++) {
+      double height = 0;
+      for (int v = 0; v < 4; v++) height += 0.25 * mesh.rest[3 * mesh.tets[group->tets[i]][v] + 2];
+      ck_assert(k ? height > 0.1 : height < 0.1);
+      ck_assert(i == 0 || group->tets[i] > group->tets[i - 1]);
+    }
+  }
+  FemMesh copy;
+  ck_assert_ok(fem_mesh_copy(&copy, &mesh));
+  ck_assert_int_eq(group_of(&copy, "core")->tet_count, core->tet_count);
+  fem_mesh_destroy(&copy);
+  fem_mesh_destroy(&mesh);
+}
+END_TEST
+
 START_TEST(references_and_markers_become_groups_where_there_are_no_names) {
   FemMesh mesh;
   ck_assert_ok(fem_mesh_read(&mesh, DATA "box.mesh", NULL, NULL));
@@ -231,6 +264,7 @@ int main(void) {
   tcase_add_checked_fixture(cases, make_directory, remove_directory);
   tcase_add_loop_test(cases, every_format_gives_the_same_box, 0, 10);
   tcase_add_loop_test(cases, physical_groups_become_vertex_groups, 0, 5);
+  tcase_add_test(cases, physical_volumes_hold_their_tetrahedra);
   tcase_add_test(cases, references_and_markers_become_groups_where_there_are_no_names);
   tcase_add_test(cases, what_is_written_is_read_back_exactly);
   tcase_add_test(cases, orientation_is_repaired_and_unused_vertices_are_dropped);

@@ -54,7 +54,7 @@ static double chosen(const SceneRun *run, int a, int b) {
 
 // What a cube that is held on two faces has in place of E.
 static double held(const SceneRun *run) {
-  double poisson = run->model.bodies[0].material.poisson;
+  double poisson = run->model.parts[0].material.poisson;
   ck_assert(poisson > 0.3);
   return YOUNG / (1 - 3.5 * pow(poisson, 4));
 }

@@ -105,8 +105,8 @@ END_TEST
 static void open_two(SceneRun *run) {
   scene_open(run, "single_tets", NULL);
   ck_assert_int_eq(run->model.body_count, 2);
-  run->model.bodies[1].material = run->model.bodies[0].material;
-  run->model.bodies[1].material.young *= 100;
+  run->model.parts[1].material = run->model.parts[0].material;
+  run->model.parts[1].material.young *= 100;
 }
 
 START_TEST(a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_bounds) {
@@ -118,7 +118,7 @@ START_TEST(a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_b
   ck_assert_ok(fem_numbering_create(&numbering, &run.model));
   ck_assert_ok(fem_part_create(&part, &run.model, &numbering));
   double *v = calloc((size_t)n, sizeof *v), *weights = calloc(2 * (size_t)n, sizeof *weights);
-  const FemMaterial *soft = &run.model.bodies[0].material;
+  const FemMaterial *soft = &run.model.parts[0].material;
   double wave = sqrt(soft->young / soft->density);
   FemErrorTolerance tolerance = {.displacement = 1e-5, .velocity = 1e-6 * wave, .speed_share = 1e-3};
   const double speeds[] = {0, 0.02 * wave, 2 * wave}; // of the first body, along z
