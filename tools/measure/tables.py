@@ -8,6 +8,7 @@ python3), {folder} a folder for what it writes; `picture` is a file in that fold
 import glob
 import json
 import os
+import re
 from typing import Callable, NamedTuple
 
 MODELS = "clip,clip32,exact,cgal,geo,geo-small,hybrid,tpn"
@@ -99,6 +100,12 @@ def cubes(told):
                       "|---|--:|--:|--:|--:|--:|--:|", told.strip()])
 
 
+def endurance(told):
+    """A row a run of tests/long/endurance: name: t = …, N frames, N steps, memory N kB, growth N %, drift N m, weight to N, energy gain N."""
+    rows = re.findall(r"^(\w+): t = .*?, (\d+) frames, (\d+) steps, memory (\d+) kB, growth (.*?), drift (.*?), weight to (.*?), energy gain (.*)$", told, re.M)
+    return table(["run", "frames", "steps", "memory [kB]", "growth", "drift", "error of the weight", "energy gain"], rows)
+
+
 def counter(name):
     return lambda summary, _: summary["counters"].get(name)
 
@@ -175,6 +182,8 @@ TABLES = {
     "precision": Bench([["tools/measure/precision", "--program", "{program}", "-m", "clip,geo,geo-small,hybrid", *(f"examples/precision/{name}.yaml"
                         for name in ("blocks", "collision", "edge", "landing", "press", "spheres"))]], as_told, 30),
     "time": Bench([["tools/measure/time_errors", "--program", "{program}", "--finer", "10"]], as_told, 20),
+    "data": Bench([["tools/measure/data", "{program}"]], as_told, 1),
+    "endurance": Bench([["tests/long/endurance", "3600", "{program}"]], endurance, 3),
     "stepping": Bench([["python/rate_simulation"]], as_told, 2),
     "hard-scenes": Bench([["tetlap", "stress", "-q", "--scenes", "--overlap", "clip,geo", "--limit", "120", "--json", "{folder}/scenes.json"], ["tools/measure/hard_cases", "{folder}/scenes.json"]], as_told, 15),
     "hard-pairs": Bench([["tetlap", "stress", "-q", "--pairs", "--json", "{folder}/pairs.json"], ["tools/measure/hard_cases", "{folder}/pairs.json"]], as_told, 15),
