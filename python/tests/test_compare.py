@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """One scene with several overlap models, functions of this process among them."""
 
+import html
 import tempfile
 import unittest
 from pathlib import Path
@@ -35,6 +36,10 @@ class Compare(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             got = tetlap.compare(SCENE, {"clip": "clip", "same": clip, "stiff": stiff}, folder, audit=1)
             self.assertEqual(list(got), ["clip", "same", "stiff"])
+            shown = got._repr_html_()
+            self.assertIn("<iframe srcdoc=", shown)
+            page = html.unescape(shown.split("srcdoc=", 1)[1])
+            self.assertTrue(all(f'"{name}"' in page for name in got))
             for name, model in got.items():
                 self.assertEqual(model.outcome, "finished")
                 self.assertEqual(Path(model.run.directory).name, name)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from . import _locate, _views
 from ._errors import RunError
-from ._results import Run
+from ._results import Run, report_html
 from ._run import _SERVER_S, _Folder, _place_scene, _Server, _Words
 from ._scene import OverlapModel, Scene, Settings, override_texts
 
@@ -34,9 +34,13 @@ class Compared:
 
 
 class Comparison(dict):
-    """The `Compared` of each model by its name; in a notebook a table of their errors."""
+    """The `Compared` of each model by its name; in a notebook a table of their errors, and the page of their runs side by side."""
 
     def _repr_html_(self):
+        folders = [model.run.directory.parent for model in self.values() if model.run]
+        return self._errors_html() + (report_html(folders[0]) if folders else "")
+
+    def _errors_html(self):
         wanted = ("force_error_l2", "trajectory_error", "audit_force_error", "audit_volume_error")
         names = [name for name in wanted if any(name in model.errors for model in self.values())]
         rows = [(model.name, model.outcome, *(_views.digits(model.errors.get(name)) for name in names)) for model in self.values()]

@@ -134,6 +134,18 @@ def _read_json(path):
     return record
 
 
+def report_html(directory):
+    """The page that `tetlap report` makes of what a run or a comparison wrote, inline; "": it cannot be made."""
+    with tempfile.TemporaryDirectory(prefix="tetlap-") as folder:
+        page = Path(folder, "page.html")
+        try:
+            done = subprocess.run([_locate.program(), "report", os.fspath(directory), "-o", os.fspath(page)], stdin=subprocess.DEVNULL,
+                                  capture_output=True, check=False)
+            return _views.page_html(page.read_text(encoding="utf-8")) if done.returncode == 0 else ""
+        except (Error, OSError):
+            return ""
+
+
 class Run:
     """A run's folder.
 
@@ -175,15 +187,9 @@ class Run:
 
     def _repr_html_(self):
         """In a notebook: the page of `tetlap report`, which needs no network; a table where it cannot be made."""
-        with tempfile.TemporaryDirectory(prefix="tetlap-") as folder:
-            page = Path(folder, "page.html")
-            try:
-                done = subprocess.run([_locate.program(), "report", os.fspath(self.directory), "-o", os.fspath(page)], stdin=subprocess.DEVNULL,
-                                      capture_output=True, check=False)
-                if done.returncode == 0 and page.is_file():
-                    return _views.page_html(page.read_text(encoding="utf-8"))
-            except (Error, OSError):
-                pass
+        page = report_html(self.directory)
+        if page:
+            return page
         summary = self.summary or {}
         wanted = ("end_time", "steps", "wall_s", "contact_force_max")  # docs/summary.md
         rows = [("outcome", self.outcome or "goes on"), ("frames", len(self.frames))]
