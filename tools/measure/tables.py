@@ -100,6 +100,30 @@ def cubes(told):
                       "|---|--:|--:|--:|--:|--:|--:|", told.strip()])
 
 
+# Table 4 of "Tetrahedron-Tetrahedron Intersection and Volume Computation Using Neural Networks": key of `tetlap eval --json`, heading, the paper's figure.
+TABLE_4 = (("accuracy.none", "status correct, no intersection", "98.02 %"), ("accuracy.vertex-face", "vertex–face", "99.07 %"), ("accuracy.edge-face", "edge–face", "99.97 %"),
+           ("accuracy.face-face", "face–face", "99.92 %"), ("accuracy.volumetric", "volumetric", "99.07 %"), ("accuracy_mean", "mean of the five", "99.37 %"),
+           ("accuracy_swapped_mean", "mean, the two tetrahedra exchanged", "–"), ("mae_by_kind.none", r"mean \|ΔV\|, no intersection", "1.67e-7"),
+           ("mae_by_kind.vertex-face", "vertex–face", "4.27e-9"), ("mae_by_kind.edge-face", "edge–face", "4.72e-9"), ("mae_by_kind.face-face", "face–face", "1.65e-9"),
+           ("mae_by_kind.volumetric", "volumetric", "2.88e-3"), ("mae_small", "small (V < .0067)", "1.47e-3"), ("mae_medium", "medium (< .0133)", "2.80e-3"),
+           ("mae_large", "large", "4.44e-3"), ("bin_accuracy_small", "correct bin, small", "88 %"), ("bin_accuracy_medium", "medium", "60 %"), ("bin_accuracy_large", "large", "41 %"))
+
+
+def table_4(told):
+    decoder, models, place = json.JSONDecoder(), [], 0
+    while place < len(told.rstrip()):
+        model, place = decoder.raw_decode(told, place)
+        models.append(model)
+        place += len(told[place:]) - len(told[place:].lstrip())
+
+    def cell(model, key):
+        for part in key.split("."):
+            model = model[part]
+        return figure(model, 3) if key.startswith("mae") else f"{100 * model:.{0 if key.startswith('bin') else 2}f} %"
+    rows = [[heading, cell(models[0], key), paper, *(cell(model, key) for model in models[1:])] for key, heading, paper in TABLE_4]
+    return table(["", f"`{models[0]['model']}`", "paper", *(f"`{model['model']}`" for model in models[1:])], rows)
+
+
 def endurance(told):
     """A row a run of tests/long/endurance: name: t = …, N frames, N steps, memory N kB, growth N %, drift N m, weight to N, energy gain N."""
     rows = re.findall(r"^(\w+): t = .*?, (\d+) frames, (\d+) steps, memory (\d+) kB, growth (.*?), drift (.*?), weight to (.*?), energy gain (.*)$", told, re.M)
@@ -182,6 +206,7 @@ TABLES = {
     "precision": Bench([["tools/measure/precision", "--program", "{program}", "-m", "clip,geo,geo-small,hybrid", *(f"examples/precision/{name}.yaml"
                         for name in ("blocks", "collision", "edge", "landing", "press", "spheres"))]], as_told, 30),
     "time": Bench([["tools/measure/time_errors", "--program", "{program}", "--finer", "10"]], as_told, 20),
+    "table-4": Bench([["tetlap", "eval", model, "--law", "paper-test", "--count", "500000", "--seed", "9001", "--json"] for model in ("tpn-published", "tpn")], table_4, 1),
     "data": Bench([["tools/measure/data", "{program}"]], as_told, 1),
     "endurance": Bench([["tests/long/endurance", "3600", "{program}"]], endurance, 3),
     "stepping": Bench([["python/rate_simulation"]], as_told, 2),
