@@ -11,6 +11,9 @@
 
 // A vertex counts as sliding from this share of its limit.
 static const double SLIDES_FROM = 0.98;
+// The stretch that μ_s − μ is of the spring, so often: no less is the way over which that is lost. At 1 the
+// force would jump.
+static const double WEAKENS_OVER = 2;
 
 // ---- What is kept for a run.
 
@@ -18,6 +21,9 @@ static Status check_law(const ContactStickLaw *law) {
   if (!(law->friction >= 0 && isfinite(law->friction)))
     return status_fail(STATUS_INPUT, "friction: the coefficient is %g; it must not be negative",
                        law->friction);
+  if (!(isfinite(law->at_rest) && law->length >= 0 && isfinite(law->length)))
+    return status_fail(STATUS_INPUT, "friction: the coefficient at rest is %g, over %g m", law->at_rest,
+                       law->length);
   if (!(law->stiffness > 0 && isfinite(law->stiffness)))
     return status_fail(STATUS_INPUT, "friction: the stiffness is %g Pa/m; it must be positive",
                        law->stiffness);
@@ -121,6 +127,7 @@ static void gather_side(ContactStick *stick, const ContactStickLast *last, int k
     node->weight += w;
     node->stiffness += half * law->stiffness * lambda * pair->area;
     node->limit = half * law->friction; // times N once it is known
+    node->excess = half * fmax(law->at_rest - law->friction, 0);
     vec3_accumulate(node->force, vec3_scale(lambda, force));
     vec3_accumulate(node->gap, vec3_scale(w, gap));
     for (int r = 0; r < 9; r++) node->deformation[r] += w * F[r];
@@ -187,6 +194,26 @@ static void remember_slip(const ContactStickEntry *entry, Vec3 cut, double spent
   node->work = (entry ? entry->work : 0) + spent;
 }
 
+// What is left of the limit once a stretch of that length is cut off where it must be; `weak`: w before.
+static void weaken(ContactStickNode *node, double weak, double given, double length) {
+  double k = node->stiffness, least = node->limit, held = least + node->excess * (1 - weak);
+  double over = node->over = fmax(given, WEAKENS_OVER * node->excess / k);
+  node->weak = weak;
+  node->limit = held;
+  if (!(k * length > held)) return;
+  node->weak = fmin(weak + (k * length - held) / (k - node->excess / over) / over, 1);
+  node->limit = least + node->excess * (1 - node->weak);
+}
+
+// ∫ L over what is cut off, with N halfway between then and now. L falls linearly, and stays at `least`.
+static double work_of_cut(const ContactStickNode *node, const ContactStickEntry *entry, double least,
+                          double cut) {
+  double weak = entry ? entry->weak : 0, held = least + node->excess * (1 - weak);
+  double press = entry ? 0.5 * (1 + entry->limit / held) : 0.5;
+  double over = fmin(cut, (1 - weak) * node->over);
+  return press * (0.5 * (held + node->limit) * over + least * (cut - over));
+}
+
 // From the history to the force of a node; returns what it dissipates since then.
 static double return_radially(ContactStick *stick, const ContactStickHistory *history,
                               ContactStickNode *node) {
@@ -197,11 +224,13 @@ static double return_radially(ContactStick *stick, const ContactStickHistory *hi
   Vec3 normal = pressed > 0 ? vec3_scale(1 / pressed, vec3_at(node->force)) : (Vec3){0, 0, 0};
   for (int r = 0; r < 9; r++) node->deformation[r] /= node->weight;
   node->limit *= pressed;
-  double k = node->stiffness;
+  node->excess *= pressed;
+  double k = node->stiffness, least = node->limit;
   Vec3 carried = project(normal, keep_energy(before, k, contact_deformation_times(node->deformation, kept)));
   Vec3 way = project(normal, vec3_scale(1 / node->weight, vec3_at(node->gap))),
        trial = vec3_add(carried, way);
   double length = vec3_length(trial);
+  if (node->excess > 0) weaken(node, entry ? entry->weak : 0, stick->laws[node->interface].length, length);
   node->slips = k * length > node->limit;
   node->advances = vec3_dot(way, trial) > 0;
   double kept_share = node->slips ? node->limit / (k * length) : 1;
@@ -211,8 +240,9 @@ static double return_radially(ContactStick *stick, const ContactStickHistory *hi
   node->trial = length;
   vec3_store(node->stretch, stretch);
   vec3_store(node->force, vec3_scale(-k, stretch));
-  double cut = node->slips ? 0.5 * (limit + node->limit) * (1 - kept_share) * length : 0,
-         spent = before - 0.5 * k * vec3_dot(carried, carried) + cut;
+  double cut = node->slips ? 0.5 * (limit + node->limit) * (1 - kept_share) * length : 0;
+  if (node->slips && node->excess > 0) cut = work_of_cut(node, entry, least, (1 - kept_share) * length);
+  double spent = before - 0.5 * k * vec3_dot(carried, carried) + cut;
   remember_slip(entry, vec3_scale(1 - kept_share, trial), spent, node);
   if (entry) stick->has_left[entry - history->entries] = false;
   return spent;
@@ -419,12 +449,20 @@ static bool keep_entry(const ContactStickEntry *entry, bool is_resting, ContactS
   return kept->work > 0;
 }
 
+// What slides may stick for a step (contact_stick_slides): only what does not go on, or is far below its
+// limit, has come to rest.
+static bool sticks_again(const ContactStickNode *node) {
+  return !node->slips && (!node->advances || !contact_stick_slides(node));
+}
+
 static ContactStickEntry entry_of(const ContactStickNode *node) {
   Vec3 stretch = vec3_at(node->stretch);
+  double regained = sticks_again(node) ? node->weak : 0;
   ContactStickEntry entry = {.interface = node->interface,
                              .vertex = node->vertex,
                              .energy = 0.5 * node->stiffness * vec3_dot(stretch, stretch),
-                             .limit = node->limit,
+                             .limit = node->limit + node->excess * regained,
+                             .weak = node->weak - regained,
                              .slides = contact_stick_slides(node),
                              .way = node->way,
                              .work = node->work};

@@ -19,6 +19,11 @@
 //             spring)
 //   force     Σ_a (w/W) T_a on the pair, at x̄: by λ on A's vertices, its opposite on B's
 //   matrix    D_a ⊗ ω ωᵀ,  ω = Σ (w/W)(λ_A, −λ_B);   D = k P in stick, μN/|s_trial| (P − ŝŝᵀ) in slip
+//   weakens   where μ_s > μ, the limit is L = (μ + (μ_s − μ)(1 − w)) N, and w grows by 1/D for each length
+//             that is cut off, up to 1 (slip weakening: Ida 1972, J. Geophys. Res. 77; Palmer and Rice 1973):
+//             s ← s L(w)/(k_a |s|) with w of the cut itself. D is the law's, but no less than
+//             2 (μ_s − μ) N/k_a, so that the force falls no faster than the spring rises: it is one function
+//             of positions, without a jump. w ← 0 where the vertex sticks again
 //   accepted  S_a ← F_a⁻¹ s;   dissipated += mean of μN_a then and now · length cut off
 //   slid      G_a ← F_a⁻¹ (F_a G_a + s_trial − s), the way of the slave against the other; lengths add up
 //
@@ -51,7 +56,9 @@ typedef struct ContactStickPair {
 
 // An interface's law.
 typedef struct ContactStickLaw {
-  double friction;  // μ
+  double friction;  // μ, of what slides
+  double at_rest;   // μ_s of what sticks; less than μ: as that
+  double length;    // D, over which the one becomes the other [m]; 0: chosen
   double stiffness; // c_t [Pa/m]
   double weight[2]; // of each side as slave: 1 and 0, 0 and 1, or ½ and ½
 } ContactStickLaw;
@@ -65,7 +72,9 @@ typedef struct ContactStickNode {
   double normal[3];      // n
   double deformation[9]; // F_a
   double stiffness;      // k_a [N/m]
-  double limit;          // μ N_a [N]
+  double limit;          // μ N_a, or what is left of μ_s N_a [N]
+  double excess;         // (μ_s − μ) N_a [N]
+  double weak, over;     // w, D [m]
   double gap[3];         // Δ_a, then s_trial [m]
   double trial;          // |s_trial| [m]
   double stretch[3];     // s [m]

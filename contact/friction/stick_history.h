@@ -20,7 +20,8 @@ typedef struct ContactStickEntry {
   double interface, vertex; // their numbers
   double stretch[3];        // S_a, in the rest frame [m]
   double energy;            // ½ k_a s² as it was stored [J]
-  double limit;             // μ N_a then [N]
+  double limit;             // μ N_a then, or what is left of μ_s N_a [N]
+  double weak;              // w: the share of μ_s − μ that it has lost since it stuck
   double slides;            // 1: at its limit; 0: it sticks, or has left
   double slip[3];           // slid since it was last touched, in the rest frame [m]
   double slid[3];           // the same in space, as it lay then [m]

@@ -29,12 +29,11 @@ static bool is_first_slave(const ContactLayout *layout, const ContactInterfaceDe
   return a->vertex_end - a->vertex_begin >= b->vertex_end - b->vertex_begin;
 }
 
-void contact_stick_pairs_laws(const ContactSystem *system, const double *coefficients,
-                              ContactStickLaw *laws) {
+void contact_stick_pairs_laws(const ContactSystem *system, ContactStickLaw *laws) {
   const ContactLayout *layout = contact_system_layout(system);
   for (int i = 0; i < layout->interface_count; i++) {
     const ContactInterfaceDef *interface = &layout->interfaces[i];
-    laws[i] = (ContactStickLaw){.friction = coefficients[i], .stiffness = interface->stiffness};
+    laws[i].stiffness = interface->stiffness;
     double first = interface->shape >= 0 || is_first_slave(layout, interface);
     if (interface->shape < 0 && interface->a == interface->b) first = 0.5;
     laws[i].weight[0] = first;

@@ -10,7 +10,7 @@
 // Laws for all interfaces of the system with these coefficients (interface_count) and the stiffness of the
 // normal law, c_t = c. Slave is the body against an obstacle, the smaller of two bodies, of two of one size
 // the one with more vertices; of a body and itself both halves. `laws` (interface_count).
-void contact_stick_pairs_laws(const ContactSystem *system, const double *coefficients, ContactStickLaw *laws);
+void contact_stick_pairs_laws(const ContactSystem *system, ContactStickLaw *laws);
 
 // Evaluates the friction for an evaluation of the system, from the last accepted state, which was at
 // `last_time` [s]. `is_resting` (interface_count) is filled.

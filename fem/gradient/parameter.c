@@ -65,7 +65,7 @@ int fem_parameter_friction_pair(const FemModel *model, int a, int b) {
   const FemContactDef *contact = contact_of(model);
   int found = -1;
   for (int i = 0; i < contact->pair_count; i++)
-    if (contact->pairs[i].friction >= 0 && is_of(model, &contact->pairs[i], a, b)) found = i;
+    if (contact->pairs[i].friction.coefficient >= 0 && is_of(model, &contact->pairs[i], a, b)) found = i;
   return found;
 }
 
@@ -96,7 +96,8 @@ static Status check_friction(const FemModel *model, const FemParameter *paramete
   if (is_pair && parameter->item >= contact->pair_count)
     return status_fail(STATUS_INPUT, "contact.pairs[%d].friction: there are %d pairs", parameter->item,
                        contact->pair_count);
-  if ((is_pair ? contact->pairs[parameter->item].friction : contact->friction) > 0) return STATUS_OK;
+  if ((is_pair ? contact->pairs[parameter->item].friction.coefficient : contact->friction.coefficient) > 0)
+    return STATUS_OK;
   return status_fail(STATUS_INPUT, "%s is not given or 0, where it has no derivative: give it a value",
                      is_pair ? "the pair's friction" : "contact.friction");
 }
@@ -291,9 +292,9 @@ double fem_parameter_value(const FemModel *model, const FemParameter *parameter)
   case FEM_PARAMETER_PAIR_STIFFNESS:
     return contact_of(model)->pairs[parameter->item].stiffness;
   case FEM_PARAMETER_FRICTION:
-    return contact_of(model)->friction;
+    return contact_of(model)->friction.coefficient;
   case FEM_PARAMETER_PAIR_FRICTION:
-    return contact_of(model)->pairs[parameter->item].friction;
+    return contact_of(model)->pairs[parameter->item].friction.coefficient;
   case FEM_PARAMETER_START:
     return model->scene->bodies[parameter->body].velocity[parameter->component];
   case FEM_PARAMETER_MOTION_ALONE:

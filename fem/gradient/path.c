@@ -381,7 +381,7 @@ static Status check_motion(const FemModel *model, const FemGradientDef *def) {
 
 static bool rubs_on(const FemModel *model, int party) {
   for (int b = 0; b < model->body_count; b++)
-    if (fem_compliance_friction(model, b, party) > 0) return true;
+    if (fem_compliance_friction(model, b, party).coefficient > 0) return true;
   return false;
 }
 
@@ -401,6 +401,10 @@ static Status check_pairs(const FemModel *model) {
 
 static Status check_friction(const FemModel *model, const FemGradientDef *def) {
   if (!fem_gradient_has_friction(model)) return STATUS_OK;
+  if (fem_scene_has_breakaway(&model->scene->contact))
+    return status_fail(STATUS_INPUT,
+                       "contact.friction.static: friction that is larger at rest has no gradient: "
+                       "a run may break away sooner or later");
   TRY(check_pairs(model));
   if (model->start)
     return status_fail(STATUS_INPUT, "start: with friction a run that goes on from another has no gradient");

@@ -368,15 +368,15 @@ static Status apply_pairs(const FemModel *model, FemCompliance *choice) {
   return STATUS_OK;
 }
 
-double fem_compliance_friction(const FemModel *model, int a, int b) {
+FemFrictionDef fem_compliance_friction(const FemModel *model, int a, int b) {
   const FemContactDef *contact = &model->scene->contact;
-  double friction = contact->friction;
+  FemFrictionDef friction = contact->friction;
   for (int i = 0; i < contact->pair_count; i++) {
     const FemContactPairDef *pair = &contact->pairs[i];
     int first = fem_compliance_party(model, pair->names[0]),
         second = fem_compliance_party(model, pair->names[1]);
     bool is_theirs = (first == a && second == b) || (first == b && second == a);
-    if (is_theirs && pair->friction >= 0) friction = pair->friction;
+    if (is_theirs && pair->friction.coefficient >= 0) friction = pair->friction;
   }
   return friction;
 }

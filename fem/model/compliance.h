@@ -78,7 +78,7 @@ const char *fem_compliance_party_name(const FemModel *model, int party);
 
 // μ between two parties: the scene's, or that of the last of `contact.pairs` with these two. Names must have
 // been checked (fem_compliance_choose).
-double fem_compliance_friction(const FemModel *model, int a, int b);
+FemFrictionDef fem_compliance_friction(const FemModel *model, int a, int b);
 
 // The least and largest κ of what can meet.
 void fem_compliance_range(const FemModel *model, const FemCompliance *choice, double range[2]);

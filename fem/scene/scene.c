@@ -92,20 +92,31 @@ bool fem_scene_has_material(const FemSceneDef *scene, bool (*is_such)(const FemM
 }
 
 double fem_scene_most_friction(const FemContactDef *contact) {
-  double most = contact->friction;
-  for (int i = 0; i < contact->pair_count; i++) most = fmax(most, contact->pairs[i].friction);
+  double most = fmax(contact->friction.coefficient, contact->friction.at_rest);
+  for (int i = 0; i < contact->pair_count; i++)
+    most = fmax(most, fmax(contact->pairs[i].friction.coefficient, contact->pairs[i].friction.at_rest));
   return most;
+}
+
+static bool breaks_away(const FemFrictionDef *friction) {
+  return friction->at_rest > friction->coefficient;
+}
+
+bool fem_scene_has_breakaway(const FemContactDef *contact) {
+  bool has = breaks_away(&contact->friction);
+  for (int i = 0; i < contact->pair_count; i++) has = has || breaks_away(&contact->pairs[i].friction);
+  return has;
 }
 
 // μ of a body with itself; the last pair stands.
 static double self_friction(const FemContactDef *contact, const char *name) {
-  double friction = contact->friction;
+  const FemFrictionDef *friction = &contact->friction;
   for (int i = 0; i < contact->pair_count; i++) {
     const FemContactPairDef *pair = &contact->pairs[i];
     bool is_its = strcmp(pair->names[0], name) == 0 && strcmp(pair->names[1], name) == 0;
-    if (is_its && pair->friction >= 0) friction = pair->friction;
+    if (is_its && pair->friction.coefficient >= 0) friction = &pair->friction;
   }
-  return friction;
+  return fmax(friction->coefficient, friction->at_rest);
 }
 
 bool fem_scene_has_self_friction(const FemSceneDef *scene) {

@@ -175,12 +175,19 @@ typedef struct FemContactLawDef {
   FemScenePlace place;
 } FemContactLawDef;
 
+// Coulomb friction.
+typedef struct FemFrictionDef {
+  double coefficient; // μ
+  double at_rest;     // of what sticks; 0: μ
+  double length;      // slid until the one has become the other [m]; 0: chosen
+} FemFrictionDef;
+
 // What holds between two in place of what holds between any two.
 typedef struct FemContactPairDef {
-  char *names[2];       // of bodies or obstacles
-  double stiffness;     // κ; 0: as without
-  double friction;      // μ; NAN: as without
-  FemContactLawDef law; // linear: as without, or by `stiffness`
+  char *names[2];          // of bodies or obstacles
+  double stiffness;        // κ; 0: as without
+  FemFrictionDef friction; // coefficient NAN: as without
+  FemContactLawDef law;    // linear: as without, or by `stiffness`
   FemScenePlace place;
 } FemContactPairDef;
 
@@ -199,7 +206,7 @@ typedef struct FemContactDef {
               // chosen
   double crease; // edges between faces that make more stay sharp [°]
   bool use_full_hessian;
-  double friction;                      // coefficient μ between any two; 0: none
+  FemFrictionDef friction;              // between any two; coefficient 0: none
   double viscosity;                     // η [Pa s]; 0: none
   bool rest_is_on;                      // bodies at rest are left out
   double rest_speed, rest_acceleration; // below them a body is calm [m/s], [m/s²]; 0: chosen
@@ -263,8 +270,10 @@ bool fem_scene_has_material(const FemSceneDef *scene, bool (*is_such)(const FemM
 // Obstacles without elements.
 int fem_scene_shape_count(const FemSceneDef *scene);
 
-// The largest μ between any two; 0: nothing rubs.
+// The largest μ between any two, at rest or not; 0: nothing rubs.
 double fem_scene_most_friction(const FemContactDef *contact);
+// Whether friction at rest is larger than that of what slides somewhere.
+bool fem_scene_has_breakaway(const FemContactDef *contact);
 // Whether a body rubs on itself, by the scene's μ or by its own of `contact.pairs`.
 bool fem_scene_has_self_friction(const FemSceneDef *scene);
 

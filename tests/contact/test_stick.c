@@ -197,6 +197,96 @@ START_TEST(a_press_that_grows_while_it_slides_dissipates_by_its_mean) {
 }
 END_TEST
 
+static Fixture *start_at_rest(double at_rest, double length) {
+  Fixture *f = start(1, true);
+  f->stick.laws[0].at_rest = at_rest;
+  f->stick.laws[0].length = length;
+  eval(f);
+  accept(f);
+  return f;
+}
+
+// Drags A by small ways; the largest pull on the way, and the work that the pull took.
+static double drag(Fixture *f, double way, int count, double *work) {
+  double most = 0;
+  for (int i = 0; i < count; i++) {
+    double before = pull_of(f).x;
+    shift(f, 0, way, 0, 0);
+    f->meet[0] += way; // the same of A touches
+    eval(f);
+    *work -= 0.5 * (before + pull_of(f).x) * way;
+    most = fmax(most, -pull_of(f).x);
+    accept(f);
+  }
+  return most;
+}
+
+// It holds up to μ_s N, and has fallen to μN once it has slid by D; what was put in is stored or dissipated.
+START_TEST(what_breaks_away_slides_at_less) {
+  const double lengths[] = {0, 2e-2}, rest = 0.8, k = STIFFNESS * AREA;
+  for (int i = 0; i < 2; i++) {
+    Fixture *f = start_at_rest(rest, lengths[i]);
+    double elastic = rest * PRESS / k, chosen = 2 * (rest - MU) * PRESS / k, work = 0;
+    double over = fmax(lengths[i], chosen), step = 1e-3 * elastic, spent = 0;
+    double most = drag(f, step, 999, &work);
+    ck_assert_near(most, 0.999 * rest * PRESS, 1e-9 * PRESS);
+    ck_assert_int_eq(f->stick.slip_count, 0);
+    most = drag(f, step, 2, &work);
+    ck_assert_double_le(most, rest * PRESS);
+    ck_assert_int_eq(f->stick.slip_count, 4);
+    // Half of D later half of μ_s − μ is lost: the way less what the spring gives back.
+    double half = 0.5 * over - 0.5 * (rest - MU) * PRESS / k;
+    drag(f, step, (int)round(half / step) - 1, &work);
+    ck_assert_near(-pull_of(f).x, 0.5 * (rest + MU) * PRESS, 2e-3 * PRESS);
+    drag(f, step, (int)(over / step) + 10, &work);
+    ck_assert_near(-pull_of(f).x, MU * PRESS, 1e-12 * PRESS);
+    spent = *history_of(f).dissipated;
+    ck_assert_near(spent + f->stick.stored, work, 1e-5 * work);
+    finish(f);
+  }
+}
+END_TEST
+
+// One step across it all: no more is dissipated than by small ones, so that nothing seems to be gained.
+START_TEST(a_long_step_dissipates_as_many_short_ones) {
+  double spent[2];
+  for (int i = 0; i < 2; i++) {
+    Fixture *f = start_at_rest(0.8, 0);
+    double work = 0, way = 0.1;
+    drag(f, i ? way : way / 1000, i ? 1 : 1000, &work);
+    ck_assert_near(-pull_of(f).x, MU * PRESS, 1e-12 * PRESS);
+    spent[i] = *history_of(f).dissipated;
+    finish(f);
+  }
+  ck_assert_near(spent[1], spent[0], 1e-3 * spent[0]);
+}
+END_TEST
+
+// Drawn back it sticks, and holds μ_s N again.
+START_TEST(what_sticks_again_holds_as_before) {
+  Fixture *f = start_at_rest(0.8, 0);
+  double k = STIFFNESS * AREA, step = 1e-2 * PRESS / k, work = 0;
+  drag(f, step, 400, &work);
+  ck_assert_near(-pull_of(f).x, MU * PRESS, 1e-12 * PRESS);
+  ck_assert_near(history_of(f).entries[0].weak, 1, 0);
+  drag(f, -step, 10, &work);
+  ck_assert_near(history_of(f).entries[0].weak, 0, 0);
+  ck_assert_near(drag(f, step, 60, &work), 0.8 * PRESS, step * k);
+  finish(f);
+}
+END_TEST
+
+START_TEST(friction_at_rest_that_is_no_more_changes_nothing) {
+  Fixture *one = start_at_rest(0, 0), *other = start_at_rest(MU, 1e-3);
+  double work[2] = {0, 0};
+  drag(one, 3e-3, 20, &work[0]);
+  drag(other, 3e-3, 20, &work[1]);
+  ck_assert(memcmp(&one->stick.forces[0], &other->stick.forces[0], sizeof(double[3])) == 0);
+  ck_assert(*history_of(one).dissipated == *history_of(other).dissipated);
+  finish(one), finish(other);
+}
+END_TEST
+
 START_TEST(forces_and_torques_of_a_pair_balance) {
   for (int k = 0; k < 3; k++) {
     Fixture *f = start(0.5 * k, true);
@@ -539,6 +629,10 @@ int main(void) {
   tcase_add_test(test_case, an_area_that_changes_while_it_sticks_keeps_the_energy);
   tcase_add_test(test_case, an_area_that_grows_at_the_limit_slips);
   tcase_add_test(test_case, a_press_that_grows_while_it_slides_dissipates_by_its_mean);
+  tcase_add_test(test_case, what_breaks_away_slides_at_less);
+  tcase_add_test(test_case, a_long_step_dissipates_as_many_short_ones);
+  tcase_add_test(test_case, what_sticks_again_holds_as_before);
+  tcase_add_test(test_case, friction_at_rest_that_is_no_more_changes_nothing);
   tcase_add_test(test_case, forces_and_torques_of_a_pair_balance);
   tcase_add_test(test_case, a_common_rotation_carries_forces_along_however_large_the_step);
   tcase_add_test(test_case, the_matrix_is_the_derivative_in_stick);

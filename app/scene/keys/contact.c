@@ -33,13 +33,40 @@ static const char *finish_contact(void *self, const char **key) {
   return NULL;
 }
 
+static const char *finish_friction(void *self, const char **key) {
+  const FemFrictionDef *friction = self;
+  *key = "static";
+  if (friction->at_rest > 0 && friction->at_rest < friction->coefficient)
+    return "static must not be below coefficient: at rest friction is no smaller than in sliding";
+  return NULL;
+}
+
 static const SceneKey friction_keys[] = {
-    {"coefficient", SCENE_NUMBER, AT(FemContactDef, friction), .range = "[0, inf)", .required = "0.3",
+    {"coefficient", SCENE_NUMBER, AT(FemFrictionDef, coefficient), .range = "[0, inf)", .required = "0.3",
      .help = "Coulomb's μ: friction is at most μ times the normal force"},
+    {"static", SCENE_NUMBER, AT(FemFrictionDef, at_rest), .range = "[0, inf)", .absent_help = "`coefficient`",
+     .help = "μ_s of what sticks: where it breaks away friction falls to `coefficient`"},
+    {"length", SCENE_NUMBER, AT(FemFrictionDef, length), .unit = "m", .range = "[0, inf)", .fallback = "0",
+     .help = "slid while it falls; at least, and if 0, twice the stretch of the contact's spring that "
+             "μ_s − μ holds"},
     {0},
 };
 static const SceneSection friction = {
-    .help = "Coulomb friction", .keys = friction_keys, .shorthand = "coefficient"};
+    .help = "Coulomb friction", .keys = friction_keys, .shorthand = "coefficient", .finish = finish_friction};
+// Without one the pair has that of any two.
+static const SceneKey pair_friction_keys[] = {
+    {"coefficient", SCENE_NUMBER, AT(FemFrictionDef, coefficient), .range = "[0, inf)", .required = "0.3",
+     .absent = NAN, .help = "μ between these two"},
+    {"static", SCENE_NUMBER, AT(FemFrictionDef, at_rest), .range = "[0, inf)", .absent_help = "`coefficient`",
+     .help = "μ_s, as above"},
+    {"length", SCENE_NUMBER, AT(FemFrictionDef, length), .unit = "m", .range = "[0, inf)", .fallback = "0",
+     .help = "as above"},
+    {0},
+};
+static const SceneSection pair_friction = {.help = "friction between two",
+                                           .keys = pair_friction_keys,
+                                           .shorthand = "coefficient",
+                                           .finish = finish_friction};
 
 static const SceneKey net_keys[] = {
     {"ghosts", SCENE_CHOICE, AT(FemContactDef, net_options.ghosts), .fallback = "auto",
@@ -130,8 +157,8 @@ static const SceneKey pair_keys[] = {
      .help = "two names, of bodies or a body and an obstacle; twice the same: a body with itself"},
     {"stiffness", SCENE_NUMBER, AT(FemContactPairDef, stiffness), .unit = "Pa", .range = "(0, inf)",
      .absent_help = "as between any two", .help = "κ between these two, as above"},
-    {"friction", SCENE_NUMBER, AT(FemContactPairDef, friction), .range = "[0, inf)", .absent = NAN,
-     .absent_help = "as between any two", .help = "μ between these two"},
+    {"friction", SCENE_SECTION, AT(FemContactPairDef, friction), .section = &pair_friction,
+     .absent_help = "as between any two", .help = "μ between these two, alone or a mapping"},
     {"law", SCENE_SECTION, AT(FemContactPairDef, law), .section = &law,
      .absent_help = "as between any two; linear with a `stiffness`", .help = "p(d) between these two"},
     {0},
@@ -172,8 +199,8 @@ static const SceneKey contact_keys[] = {
      .help = "`smooth`: edges between faces that make a larger angle stay sharp"},
     {"hessian", SCENE_CHOICE, AT(FemContactDef, use_full_hessian), .fallback = "full",
      .choices = &app_scene_choices_hessians, .help = "derivatives of the contact force for Newton's method"},
-    {"friction", SCENE_SECTION, .section = &friction, .absent_help = "no friction",
-     .help = "contacts resist sliding; a number alone is its coefficient"},
+    {"friction", SCENE_SECTION, AT(FemContactDef, friction), .section = &friction,
+     .absent_help = "no friction", .help = "contacts resist sliding; a number alone is its coefficient"},
     {"pairs", SCENE_LIST, AT(FemContactDef, pairs), .section = &pair,
      .count_offset = offsetof(FemContactDef, pair_count),
      .help = "other values for two given bodies; of several entries for the same two the last one is used"},

@@ -32,12 +32,15 @@ static Status create(void **self, const FemModel *model) {
   return STATUS_OK;
 }
 
-static Status create_law(Stick *stick, int count, double *coefficients, ContactStickLaw *laws) {
+static Status create_law(Stick *stick, int count, ContactStickLaw *laws) {
   const FemModel *model = stick->model;
   const ContactInterfaceDef *interfaces = contact_system_layout(stick->contact)->interfaces;
-  for (int i = 0; i < count; i++)
-    coefficients[i] = fem_compliance_friction(model, interfaces[i].a, interfaces[i].b);
-  contact_stick_pairs_laws(stick->contact, coefficients, laws);
+  for (int i = 0; i < count; i++) {
+    const FemFrictionDef friction = fem_compliance_friction(model, interfaces[i].a, interfaces[i].b);
+    laws[i] = (ContactStickLaw){
+        .friction = friction.coefficient, .at_rest = friction.at_rest, .length = friction.length};
+  }
+  contact_stick_pairs_laws(stick->contact, laws);
   const ContactSystemDef *def = &contact_system_layout(stick->contact)->def;
   TRY(contact_stick_create(&stick->law, def->vertex_count, def->rest, def->tets, count, laws));
   stick->law.stars = contact_system_stars(stick->contact);
@@ -50,11 +53,9 @@ static Status connect(void *self, const FemSystem *system) {
   stick->contact = fem_effect_contact_system(fem_system_effect(system, &fem_effect_contact));
   int count = contact_system_layout(stick->contact)->interface_count;
   stick->is_resting = memory_zeroed((size_t)count, sizeof *stick->is_resting);
-  double *coefficients = memory_zeroed((size_t)count, sizeof *coefficients);
   ContactStickLaw *laws = memory_zeroed((size_t)count, sizeof *laws);
-  bool has_room = stick->is_resting && coefficients && laws;
-  Status status = has_room ? create_law(stick, count, coefficients, laws) : status_no_memory("friction");
-  memory_free(coefficients);
+  bool has_room = stick->is_resting && laws;
+  Status status = has_room ? create_law(stick, count, laws) : status_no_memory("friction");
   memory_free(laws);
   return status;
 }

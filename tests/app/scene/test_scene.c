@@ -216,7 +216,9 @@ static void check_settings(const FemSceneDef *scene) {
   ck_assert_double_eq(scene->contact.margin, 0.02);
   ck_assert_int_eq(scene->contact.smooth, 2);
   ck_assert_double_eq(scene->contact.crease, 25);
-  ck_assert_double_eq(scene->contact.friction, 0.3);
+  ck_assert_double_eq(scene->contact.friction.coefficient, 0.3);
+  ck_assert_double_eq(scene->contact.friction.at_rest, 0.5);
+  ck_assert_double_eq(scene->contact.friction.length, 1e-6);
   ck_assert_double_eq(scene->contact.viscosity, 11);
   ck_assert_int_eq(scene->contact.law.law.kind, CONTACT_LAW_POWER);
   ck_assert_double_eq(scene->contact.law.law.exponent, 1.5);
@@ -235,10 +237,12 @@ static void check_settings(const FemSceneDef *scene) {
   ck_assert_str_eq(scene->contact.pairs[0].names[0], "lower");
   ck_assert_str_eq(scene->contact.pairs[0].names[1], "ground");
   ck_assert_double_eq(scene->contact.pairs[0].stiffness, 5e6);
-  ck_assert(isnan(scene->contact.pairs[0].friction));
+  ck_assert(isnan(scene->contact.pairs[0].friction.coefficient));
   ck_assert_str_eq(scene->contact.pairs[1].names[1], "upper-2");
   ck_assert_double_eq(scene->contact.pairs[1].stiffness, 0);
-  ck_assert_double_eq(scene->contact.pairs[1].friction, 0.1);
+  ck_assert_double_eq(scene->contact.pairs[1].friction.coefficient, 0.1);
+  ck_assert_double_eq(scene->contact.pairs[1].friction.at_rest, 0.2);
+  ck_assert_double_eq(scene->contact.pairs[1].friction.length, 2e-6);
   ck_assert_int_eq(scene->bodies[1].probe_count, 4);
   ck_assert_str_eq(scene->bodies[1].probes[0].name, "sole");
   ck_assert_str_eq(scene->bodies[1].probes[0].select.group, "glue");

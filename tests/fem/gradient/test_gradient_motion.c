@@ -60,6 +60,7 @@ START_TEST(motions_without_a_gradient_are_refused_by_name) {
   refuse("effects.damping=1e-3", young, "body 'lower' is damped");
   refuse("bodies.upper.material.viscosity=10", young, "body 'upper' is damped");
   refuse("contact.viscosity=1", young, "contact.viscosity");
+  refuse("contact.friction={coefficient: 0.2, static: 0.3}", young, "contact.friction.static");
   refuse("contact.rest={speed: 1e-3}", young, "contact.rest");
   refuse("contact={stiffness: 1e7, friction: 0.1, law: {power: {pressure: 1e5, depth: 0.01, exponent: 1.5}}}",
          young, "contact.law");

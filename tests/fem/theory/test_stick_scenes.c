@@ -130,6 +130,55 @@ START_TEST(a_block_on_a_belt_breaks_away_and_slips_at_mu_p) {
 }
 END_TEST
 
+// A mass on a spring between stick and slip (Den Hartog, Mechanical Vibrations, 7.6): from μ_s N to (2 μ −
+// μ_s) N and back; it sticks for 2 (μ_s − μ) N/(K V) and slips for 2/ω (π − atan((μ_s − μ) N ω/(K V))).
+START_TEST(a_block_on_a_belt_sticks_and_slips_in_turn) {
+  SceneRun run;
+  scene_run(&run, "../../examples/validation/stick_slip", (const char *const[]){"solver.threads=1", NULL});
+  const double K = 200, N = 4, V = 0.02, w = sqrt(200), drop = 0.2 * N / K;
+  const double sticks = 2 * drop / V, slips = 2 / w * (M_PI - atan(drop * w / V));
+  double lows[8], most = 0, least = INFINITY;
+  int count = 0, last = run.result.trajectory.frame_count - 1;
+  for (int f = 100; f <= last; f++) {
+    double x = scene_position(&run, f, 0)[0] - run.model.rest[0];
+    most = fmax(most, x), least = fmin(least, x);
+    double before = scene_position(&run, f - 1, 0)[0], now = scene_position(&run, f, 0)[0];
+    bool turns = f < last && f > 1 && now < before && now <= scene_position(&run, f + 1, 0)[0];
+    if (turns && count < 8) lows[count++] = run.result.trajectory.times[f];
+  }
+  ck_assert_int_ge(count, 2);
+  // Frames are .01 s apart.
+  ck_assert_near((lows[count - 1] - lows[0]) / (count - 1), sticks + slips, 0.02 * (sticks + slips));
+  // The swing passes the points where it sticks by the belt's speed.
+  double swing = sqrt(drop * drop + V * V / (w * w));
+  ck_assert_near(most, 0.3 * N / K + swing, 0.02 * swing);
+  ck_assert_near(least, 0.3 * N / K - swing, 0.02 * swing);
+  ck_assert_double_lt(scene_gain(&run), 1e-3);
+  scene_close(&run);
+}
+END_TEST
+
+// A stiff block of 39.24 N is drawn at its foot, which does not tilt it, ever harder until t = .8 s: it holds
+// up to .6 of its weight, which is at .771 s, and is then accelerated by (25 N − .3 · 39.24 N)/4 kg.
+START_TEST(a_block_breaks_away_at_mu_s_and_slides_at_mu) {
+  SceneRun run;
+  scene_run(&run, "incline",
+            (const char *const[]){
+                "contact.potential=field", "contact.overlap=clip", "contact.stiffness=3.5e7",
+                "bodies.block.material.young=1e8", "contact.friction={coefficient: 0.3, static: 0.6}",
+                "effects.gravity=[0, 0, -9.81]", "time.tolerance=1e-4",
+                "bodies.block.loads=[{group: z_min, force: [25, 0, 0], table: [[0.3, 0], [0.8, 1]]}]", NULL});
+  double start = centre(&run, 5).x;
+  ck_assert_double_le(fabs(centre(&run, 15).x - start), 5e-5); // 22.5 N of 23.5
+  ck_assert_double_ge(centre(&run, 16).x - start, 5e-4);
+  double a = (centre(&run, 20).x - 2 * centre(&run, 18).x + centre(&run, 16).x) / (0.1 * 0.1);
+  double expected = (25 - 0.3 * 39.24) / 4;
+  ck_assert_near(a, expected, 0.01 * expected);
+  ck_assert_double_lt(scene_gain(&run), 1e-3);
+  scene_close(&run);
+}
+END_TEST
+
 START_TEST(static_scenes_have_friction) {
   SceneRun run;
   scene_run(&run, "drag", NULL);
@@ -191,6 +240,8 @@ int main(void) {
   tcase_add_loop_test(test_case, a_cube_held_between_plates_is_carried_by_what_is_written, 0, 3);
   tcase_add_test(test_case, a_ball_that_slides_rolls_on_at_what_its_inertia_leaves);
   tcase_add_test(test_case, a_block_on_a_belt_breaks_away_and_slips_at_mu_p);
+  tcase_add_test(test_case, a_block_on_a_belt_sticks_and_slips_in_turn);
+  tcase_add_test(test_case, a_block_breaks_away_at_mu_s_and_slides_at_mu);
   tcase_add_test(test_case, static_scenes_have_friction);
   return suite_run("stick_scenes", test_case, 120);
 }
