@@ -54,6 +54,8 @@ void contact_evaluation_destroy(ContactEvaluation *evaluation) {
   memory_free(evaluation->flags);
   memory_free(evaluation->centroids);
   memory_free(evaluation->fields);
+  memory_free(evaluation->elements), memory_free(evaluation->bodies);
+  memory_free(evaluation->rest_volumes);
   *evaluation = (ContactEvaluation){0};
 }
 
@@ -272,6 +274,25 @@ static Status ask_model(const ContactEvaluation *evaluation, const ContactLayout
   return STATUS_OK;
 }
 
+// Where the pairs of meshes are from.
+static Status find_origins(ContactEvaluation *evaluation, const ContactLayout *layout,
+                           OverlapOrigins *origins) {
+  const size_t size = 2 * (size_t)evaluation->mesh_pair_count;
+  if (!memory_reserve((void **)&evaluation->elements, &evaluation->element_capacity, size, sizeof(int32_t)) ||
+      !memory_reserve((void **)&evaluation->bodies, &evaluation->body_capacity, size, sizeof(int32_t)) ||
+      !memory_reserve((void **)&evaluation->rest_volumes, &evaluation->rest_capacity, size, sizeof(double)))
+    return status_no_memory("overlapping pairs");
+  for (size_t k = 0; k < size; k++) {
+    const ContactPair *pair = &evaluation->pairs[k / 2];
+    const ContactInterfaceDef *interface = &layout->interfaces[pair->interface];
+    evaluation->elements[k] = contact_layout_origin(layout, pair->cells[k % 2]);
+    evaluation->bodies[k] = k % 2 == 0 ? interface->a : interface->b;
+    evaluation->rest_volumes[k] = layout->cell_volumes[pair->cells[k % 2]];
+  }
+  *origins = (OverlapOrigins){evaluation->elements, evaluation->bodies, evaluation->rest_volumes};
+  return STATUS_OK;
+}
+
 static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout *layout,
                              const OverlapModel *model) {
   int count = evaluation->mesh_pair_count;
@@ -285,6 +306,7 @@ static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout 
                         .gradient = wants_gradient ? evaluation->gradients : NULL,
                         .centroid = wants_centroid ? evaluation->centroids : NULL,
                         .flags = evaluation->flags};
+  if (overlap_model_wants_origins(model)) TRY(find_origins(evaluation, layout, &batch.origins));
   if (count < FEW_TO_SHARE) {
     Status status = overlap_model_eval(model, &batch);
     if (status) return blame_failure(evaluation, layout, model, &batch, 0, status);

@@ -50,6 +50,9 @@ typedef struct ContactEvaluation {
   unsigned char *is_kept; // of each candidate
   double (*boxes)[6];     // of the candidates' cells                 (cell_count)
   unsigned *flags;
+  int32_t *elements, *bodies; // of mesh pairs, where the model asks whence they are (mesh_pair_count, 2)
+  double *rest_volumes;       // likewise: the cells' volumes at rest [m³]           (mesh_pair_count, 2)
+  size_t element_capacity, body_capacity, rest_capacity;
   size_t kept_capacity, pair_capacity, coordinate_capacity, volume_capacity, gradient_capacity;
   size_t force_capacity, flag_capacity, centroid_capacity, field_capacity, node_capacity;
 } ContactEvaluation;

@@ -100,6 +100,10 @@ bool overlap_model_has_gradient(const OverlapModel *model) {
   return !model->ops->has_gradient || model->ops->has_gradient(model->self);
 }
 
+bool overlap_model_wants_origins(const OverlapModel *model) {
+  return model->ops->wants_origins && model->ops->wants_origins(model->self);
+}
+
 void overlap_model_destroy(OverlapModel *model) {
   if (model->ops && model->ops->destroy) model->ops->destroy(model->self);
   *model = (OverlapModel){0};

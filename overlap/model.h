@@ -35,6 +35,9 @@ bool overlap_model_has_own_centroid(const OverlapModel *model);
 // Whether it has first derivatives.
 bool overlap_model_has_gradient(const OverlapModel *model);
 
+// Whether it wants the origins of pairs.
+bool overlap_model_wants_origins(const OverlapModel *model);
+
 // Evaluates all pairs of the batch with OpenMP. STATUS_INPUT: a coordinate is NaN or infinite; the message
 // names the pair. STATUS_INPUT: a gradient, centroid or Hessian is asked of a model that has none. Where x̄ follows from ∇V and the
 // batch has no place for ∇V, that is allocated for the call.

@@ -36,6 +36,13 @@ void overlap_ops_write_nothing(const OverlapAnswer *answer) {
   if (answer->centroid) memset(answer->centroid, 0, 3 * sizeof(double));
 }
 
+static OverlapOrigins part_of(const OverlapOrigins *origins, size_t begin) {
+  if (!origins->elements) return *origins;
+  return (OverlapOrigins){.elements = origins->elements + 2 * begin,
+                          .bodies = origins->bodies + 2 * begin,
+                          .rest = origins->rest + 2 * begin};
+}
+
 OverlapBatch overlap_ops_part(const OverlapBatch *batch, int begin, int count) {
   enum { SIZE = OVERLAP_PAIR_SIZE };
   size_t at = (size_t)begin * SIZE;
@@ -46,7 +53,8 @@ OverlapBatch overlap_ops_part(const OverlapBatch *batch, int begin, int count) {
                         .gradient = batch->gradient ? batch->gradient + at : NULL,
                         .hessian = batch->hessian ? batch->hessian + at * SIZE : NULL,
                         .flags = batch->flags ? batch->flags + begin : NULL,
-                        .centroid = batch->centroid ? batch->centroid + 3 * (size_t)begin : NULL};
+                        .centroid = batch->centroid ? batch->centroid + 3 * (size_t)begin : NULL,
+                        .origins = part_of(&batch->origins, (size_t)begin)};
 }
 
 void overlap_ops_swap(const double pair[24], double swapped[24]) {

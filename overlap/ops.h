@@ -15,6 +15,7 @@
 #define TETLAP_OVERLAP_OPS_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "base/status.h"
 #include "overlap/options.h"
@@ -33,16 +34,34 @@ typedef enum OverlapFlag {
   OVERLAP_UNSOUND = 1 << 7,  // the model's V was negative, and became 0, or is above the smaller tetrahedron
 } OverlapFlag;
 
+// Where the pairs of a scene are from; all NULL: not known.
+typedef struct OverlapOrigins {
+  const int32_t *elements; // as frames number them                (pair_count, 2)
+  const int32_t *bodies;   // in the order of the scene            (pair_count, 2)
+  const double *rest;      // the tetrahedra's volumes at rest [m³] (pair_count, 2)
+} OverlapOrigins;
+
 // A batch of pairs; all arrays are the caller's.
 typedef struct OverlapBatch {
   int pair_count;
-  const double *pairs; // vertices [m]                     (pair_count, 2, 4, 3)
-  double *volume;      // out: V [m³]                      (pair_count)
-  double *gradient;    // out, or NULL: dV/dx [m²]         (pair_count, 2, 4, 3)
-  double *hessian;     // out, or NULL: d²V/dx² [m]        (pair_count, 24, 24), symmetric
-  unsigned *flags;     // out, or NULL: OverlapFlag (pair_count)
-  double *centroid;    // out, or NULL: x̄ of the intersection [m] (pair_count, 3)
+  const double *pairs;    // vertices [m]                     (pair_count, 2, 4, 3)
+  double *volume;         // out: V [m³]                      (pair_count)
+  double *gradient;       // out, or NULL: dV/dx [m²]         (pair_count, 2, 4, 3)
+  double *hessian;        // out, or NULL: d²V/dx² [m]        (pair_count, 24, 24), symmetric
+  unsigned *flags;        // out, or NULL: OverlapFlag (pair_count)
+  double *centroid;       // out, or NULL: x̄ of the intersection [m] (pair_count, 3)
+  OverlapOrigins origins; // for models that want them
 } OverlapBatch;
+
+// Derivatives backwards: of a number g that follows V, x̄ and ∇V, by the coordinates of the pairs.
+typedef struct OverlapPull {
+  int pair_count;
+  const double *pairs;       // [m]                      (pair_count, 2, 4, 3)
+  const double *by_volume;   // ∂g/∂V                    (pair_count)
+  const double *by_centroid; // ∂g/∂x̄, or NULL: 0        (pair_count, 3)
+  const double *by_gradient; // ∂g/∂(∇V), or NULL: 0     (pair_count, 2, 4, 3)
+  double *slope;             // out: ∂g/∂x               (pair_count, 2, 4, 3)
+} OverlapPull;
 
 // Where the answer for one pair goes.
 typedef struct OverlapAnswer {
@@ -93,6 +112,10 @@ typedef struct OverlapOps {
   const char *weights;
   // V is exactly 0 of every pair that is apart: such a pair need not be asked for.
   bool is_zero_apart;
+  // What OverlapPull asks for; NULL: it cannot. Pairs that it answers unasked have the slope 0.
+  Status (*eval_pull)(const void *self, const OverlapPull *pull);
+  // Whether it wants to know the origins of pairs; NULL: no.
+  bool (*wants_origins)(const void *self);
 } OverlapOps;
 
 // A capability that a model has however it was made.

@@ -16,7 +16,7 @@
  * Pairs are rows of 24 numbers: the four vertices of one tetrahedron, then those of the other, in metres.
  * Either orientation means the same set of points. Arrays are contiguous, in double precision, and the
  * caller's: they end with the call, may not be kept, and hold exactly `count` rows. An array that is NULL is
- * not wanted; all that are not NULL are filled.
+ * not wanted; all that are not NULL are filled. A row written beyond an end ends the run.
  *
  * One thread calls at a time. The library may start threads of its own. What it prints goes where the
  * program's goes. It is part of the process that loads it, with what the licence of that program, the GPL,
@@ -43,6 +43,8 @@ enum {
   TETLAP_MODEL_DOUBT = 1 << 3,    /* how far V may be off */
   TETLAP_MODEL_DISJOINT = 1 << 4, /* not an array: V of pairs without common interior is 0 as it stands, so
                                      that the program needs no test of its own before it asks */
+  TETLAP_MODEL_ORIGINS = 1 << 5,  /* not an array: it wants to be told where a scene's pairs are from */
+  TETLAP_MODEL_CURVATURE = 1 << 6, /* not an array: `pull_back` takes `by_gradient` */
 };
 
 typedef struct TetlapModelBatch {
@@ -54,7 +56,24 @@ typedef struct TetlapModelBatch {
   double *centroid;    /* [m]               (count, 3), or NULL; of a pair with V = 0 anything finite */
   double *logit;       /*                   (count), or NULL */
   double *doubt;       /* [m^3]             (count), or NULL */
+  /* Of pairs in a scene, where TETLAP_MODEL_ORIGINS asks for them; else NULL. Where contact cuts an element,
+   * several tetrahedra have its number, each with a volume of its own. */
+  const int32_t *elements; /* numbers of the two, as frames count them (count, 2) */
+  const int32_t *bodies;   /* in the order of the scene                (count, 2) */
+  const double *rest;      /* the tetrahedra's volumes at rest [m^3]   (count, 2) */
 } TetlapModelBatch;
+
+/* Of a number g that follows V, the centroid c and dV/dx: its derivative by the pairs,
+ *   by_volume dV/dx + by_centroid dc/dx + by_gradient d2V/dx2. */
+typedef struct TetlapModelPull {
+  size_t size;
+  size_t count;
+  const double *pairs;       /* (count, 2, 4, 3) */
+  const double *by_volume;   /* dg/dV (count) */
+  const double *by_centroid; /* dg/dc (count, 3), or NULL: 0 */
+  const double *by_gradient; /* dg/d(dV/dx) (count, 2, 4, 3), or NULL: 0 */
+  double *slope;             /* to be filled: dg/dx (count, 2, 4, 3) */
+} TetlapModelPull;
 
 typedef struct TetlapModel {
   size_t size;      /* sizeof(TetlapModel) */
@@ -67,6 +86,9 @@ typedef struct TetlapModel {
   /* Not 0: it failed, and the run ends with that message. */
   int (*evaluate)(void *self, const TetlapModelBatch *batch, char *message, size_t size);
   void (*close)(void *self); /* or NULL */
+  /* Or NULL. dV/dx is taken from it where the model has no array of it. Like `evaluate`. A struct whose `size`
+   * ends before it, as an older header has it, is as good as one with NULL. */
+  int (*pull_back)(void *self, const TetlapModelPull *pull, char *message, size_t size);
 } TetlapModel;
 
 /* The one function that a library exports. Never NULL; the struct lasts as long as the library is loaded. */

@@ -221,4 +221,6 @@ extern "C" const OverlapOps overlap_cgal_ops = {
     false,              // lacks_scale
     nullptr,            // weights
     true,               // is_zero_apart
+    nullptr,            // eval_pull
+    nullptr,            // wants_origins
 };

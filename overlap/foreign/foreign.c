@@ -10,29 +10,9 @@
 #include "base/vec3.h"
 #include "overlap/foreign/library.h"
 #include "overlap/foreign/process.h"
+#include "overlap/foreign/request.h"
 #include "overlap/separation.h"
 #include "overlap/source.h"
-
-// The arrays of a request, in the order of their widths.
-enum { PAIRS, VOLUME, GRADIENT, CENTROID, LOGIT, DOUBT, ARRAYS };
-static const struct {
-  const char *name;
-  size_t width; // numbers a pair
-} shapes[ARRAYS] = {{"pairs", 24},   {"volume", 1}, {"gradient", 24},
-                    {"centroid", 3}, {"logit", 1},  {"doubt", 1}};
-
-// Behind each array stand numbers that no model may touch: a row of the widest.
-enum { FENCE = 24 };
-static const unsigned char FENCE_BYTE = 0xA5;
-
-// What is asked of the model, row by row where not all pairs are.
-typedef struct Asked {
-  int *rows; // of the batch                                  (count)
-  size_t row_capacity;
-  int count;
-  double *arrays[ARRAYS]; // each with its fence           (count, width)
-  size_t capacities[ARRAYS];
-} Asked;
 
 typedef struct Foreign {
   OverlapOps ops;
@@ -40,15 +20,22 @@ typedef struct Foreign {
   OverlapForeignPort port;
   bool keeps_ghosts;
   pthread_mutex_t lock; // of all below, and of the port
-  Asked asked;
+  int *rows;            // of the batch: those that are asked for  (request.count)
+  size_t row_capacity;
+  OverlapForeignRequest request;
 } Foreign;
+
+static const unsigned PAIRS = 1u << OVERLAP_FOREIGN_PAIRS, VOLUME = 1u << OVERLAP_FOREIGN_VOLUME,
+                      GRADIENT = 1u << OVERLAP_FOREIGN_GRADIENT, CENTROID = 1u << OVERLAP_FOREIGN_CENTROID,
+                      REST = 1u << OVERLAP_FOREIGN_REST, BY_VOLUME = 1u << OVERLAP_FOREIGN_BY_VOLUME,
+                      BY_CENTROID = 1u << OVERLAP_FOREIGN_BY_CENTROID,
+                      BY_GRADIENT = 1u << OVERLAP_FOREIGN_BY_GRADIENT, SLOPE = 1u << OVERLAP_FOREIGN_SLOPE;
 
 static void destroy(void *self) {
   Foreign *foreign = self;
   if (foreign->port.close) foreign->port.close(foreign->port.self);
-  Asked *asked = &foreign->asked;
-  memory_free(asked->rows);
-  for (int a = 0; a < ARRAYS; a++) memory_free(asked->arrays[a]);
+  memory_free(foreign->rows);
+  overlap_foreign_request_destroy(&foreign->request);
   pthread_mutex_destroy(&foreign->lock);
   memory_free(foreign);
 }
@@ -62,7 +49,17 @@ static bool has_centroid(const void *self) {
 }
 
 static bool has_gradient(const void *self) {
-  return (((const Foreign *)self)->port.gives & TETLAP_MODEL_GRADIENT) != 0;
+  const OverlapForeignPort *port = &((const Foreign *)self)->port;
+  return (port->gives & TETLAP_MODEL_GRADIENT) != 0 || port->pull;
+}
+
+static bool has_hessian(const void *self) {
+  const OverlapForeignPort *port = &((const Foreign *)self)->port;
+  return (port->gives & TETLAP_MODEL_CURVATURE) != 0 && port->pull;
+}
+
+static bool wants_origins(const void *self) {
+  return (((const Foreign *)self)->port.gives & TETLAP_MODEL_ORIGINS) != 0;
 }
 
 static double volume_of(const double tet[12]) {
@@ -76,27 +73,43 @@ static unsigned answer_unasked(const Foreign *foreign, const double pair[24]) {
   return overlap_separation_pair(pair, 0) >= 0 ? OVERLAP_DISJOINT : 0;
 }
 
-static Status reserve(Asked *asked, size_t count, const bool is_wanted[ARRAYS]) {
-  bool fits = memory_reserve((void **)&asked->rows, &asked->row_capacity, count, sizeof *asked->rows);
-  for (int a = 0; a < ARRAYS && fits; a++)
-    if (is_wanted[a])
-      fits = memory_reserve((void **)&asked->arrays[a], &asked->capacities[a],
-                            count * shapes[a].width + FENCE, sizeof(double));
-  return fits ? STATUS_OK : status_no_memory("pairs for a model");
+static Status reserve(Foreign *foreign, int count, unsigned wanted) {
+  if (!memory_reserve((void **)&foreign->rows, &foreign->row_capacity, (size_t)count, sizeof(int)))
+    return status_no_memory("pairs for a model");
+  return overlap_foreign_request_reserve(&foreign->request, (size_t)count, wanted);
 }
 
-static void choose(const Foreign *foreign, Asked *asked, const OverlapBatch *batch) {
-  asked->count = 0;
+static void append(Foreign *foreign, int row, const double pair[OVERLAP_PAIR_SIZE]) {
+  const size_t at = foreign->request.count++;
+  foreign->rows[at] = row;
+  memcpy(foreign->request.arrays[OVERLAP_FOREIGN_PAIRS] + OVERLAP_PAIR_SIZE * at, pair,
+         OVERLAP_PAIR_SIZE * sizeof *pair);
+}
+
+static void choose(Foreign *foreign, const OverlapBatch *batch) {
+  foreign->request.count = 0;
   for (int i = 0; i < batch->pair_count; i++) {
     unsigned flags = 0;
     const double *pair = batch->pairs + (size_t)i * OVERLAP_PAIR_SIZE;
     OverlapAnswer answer = overlap_ops_answer(batch, i, &flags);
     overlap_ops_write_nothing(&answer);
     *answer.flags = answer_unasked(foreign, pair);
-    if (*answer.flags) continue;
-    memcpy(asked->arrays[PAIRS] + (size_t)asked->count * OVERLAP_PAIR_SIZE, pair,
-           OVERLAP_PAIR_SIZE * sizeof *pair);
-    asked->rows[asked->count++] = i;
+    if (!*answer.flags) append(foreign, i, pair);
+  }
+}
+
+// Of the rows that are asked for: their numbers, `width` each.
+static void gather(const Foreign *foreign, int width, const double *from, double *to) {
+  for (size_t k = 0; k < foreign->request.count; k++)
+    for (int c = 0; c < width; c++) *to++ = from[(size_t)width * (size_t)foreign->rows[k] + (size_t)c];
+}
+
+static void tell_origins(Foreign *foreign, const OverlapOrigins *origins) {
+  OverlapForeignRequest *request = &foreign->request;
+  gather(foreign, 2, origins->rest, request->arrays[OVERLAP_FOREIGN_REST]);
+  for (size_t k = 0; k < 2 * request->count; k++) {
+    const size_t at = 2 * (size_t)foreign->rows[k / 2] + k % 2;
+    request->elements[k] = origins->elements[at], request->bodies[k] = origins->bodies[at];
   }
 }
 
@@ -106,85 +119,70 @@ static bool are_finite(int count, const double *numbers) {
   return sum == 0;
 }
 
-static bool is_whole(const unsigned char *fence) {
-  bool is = true;
-  for (size_t i = 0; i < FENCE * sizeof(double); i++) is = is && fence[i] == FENCE_BYTE;
-  return is;
-}
-
-// All that is wanted is NaN before the model is asked: what it leaves unwritten is no answer. A fence that is
-// not whole afterwards ends the run: what else was overwritten nobody knows.
-static Status ask(Foreign *foreign, const bool is_wanted[ARRAYS]) {
-  Asked *asked = &foreign->asked;
-  double *arrays[ARRAYS] = {NULL};
-  const size_t count = (size_t)asked->count;
-  for (int a = 0; a < ARRAYS; a++) {
-    if (!is_wanted[a]) continue;
-    arrays[a] = asked->arrays[a];
-    if (a != PAIRS) memset(arrays[a], 0xFF, count * shapes[a].width * sizeof(double));
-    memset(arrays[a] + count * shapes[a].width, FENCE_BYTE, FENCE * sizeof(double));
-  }
-  TetlapModelBatch request = {.size = sizeof request,
-                              .count = count,
-                              .pairs = arrays[PAIRS],
-                              .volume = arrays[VOLUME],
-                              .gradient = arrays[GRADIENT],
-                              .centroid = arrays[CENTROID],
-                              .logit = arrays[LOGIT],
-                              .doubt = arrays[DOUBT]};
-  TRY(foreign->port.ask(foreign->port.self, &request));
-  for (int a = 0; a < ARRAYS; a++)
-    if (arrays[a] && !is_whole((const unsigned char *)(arrays[a] + count * shapes[a].width)))
-      return status_fail(
-          STATUS_SOLVER,
-          "overlap model '%s' wrote beyond the end of `%s`, which has %zu rows of %zu: it must "
-          "write `count` rows of each array and no more",
-          foreign->name, shapes[a].name, count, shapes[a].width);
-  return STATUS_OK;
-}
-
 static Status fail_not_finite(const Foreign *foreign, int pair, const char *what) {
   return status_fail(STATUS_SOLVER, "overlap model '%s': pair %d: %s is not a finite number", foreign->name,
                      pair, what);
 }
 
-// The model's answer for pair k of those asked, into the batch.
-static Status give(const Foreign *foreign, const Asked *asked, const OverlapBatch *batch, int k) {
-  const int i = asked->rows[k];
-  const size_t at = (size_t)k;
+// The model's answer for one of the pairs asked for, into the batch.
+static Status give(const Foreign *foreign, const OverlapBatch *batch, size_t at) {
+  const int i = foreign->rows[at];
   unsigned flags = 0;
   OverlapAnswer answer = overlap_ops_answer(batch, i, &flags);
-  const double *pair = batch->pairs + (size_t)i * OVERLAP_PAIR_SIZE, *const *arrays =
-                                                                         (const double *const *)asked->arrays;
-  const double volume = arrays[VOLUME][at];
+  const double *pair = batch->pairs + (size_t)i * OVERLAP_PAIR_SIZE;
+  double *const *arrays = foreign->request.arrays;
+  const double volume = arrays[OVERLAP_FOREIGN_VOLUME][at];
   if (!isfinite(volume)) return fail_not_finite(foreign, i, "its volume");
   const double most = fmin(volume_of(pair), volume_of(pair + 12));
   if (volume < 0 || volume > most * (1 + 1e-9)) *answer.flags |= OVERLAP_UNSOUND;
   if (!(volume > 0)) return STATUS_OK;
   *answer.volume = volume;
   if (answer.gradient) {
-    if (!are_finite(24, arrays[GRADIENT] + 24 * at)) return fail_not_finite(foreign, i, "a gradient of it");
-    memcpy(answer.gradient, arrays[GRADIENT] + 24 * at, 24 * sizeof(double));
+    if (!are_finite(24, arrays[OVERLAP_FOREIGN_GRADIENT] + 24 * at))
+      return fail_not_finite(foreign, i, "a gradient of it");
+    memcpy(answer.gradient, arrays[OVERLAP_FOREIGN_GRADIENT] + 24 * at, 24 * sizeof(double));
   }
   if (answer.centroid) {
-    if (!are_finite(3, arrays[CENTROID] + 3 * at)) return fail_not_finite(foreign, i, "its centroid");
-    memcpy(answer.centroid, arrays[CENTROID] + 3 * at, 3 * sizeof(double));
+    if (!are_finite(3, arrays[OVERLAP_FOREIGN_CENTROID] + 3 * at))
+      return fail_not_finite(foreign, i, "its centroid");
+    memcpy(answer.centroid, arrays[OVERLAP_FOREIGN_CENTROID] + 3 * at, 3 * sizeof(double));
+  }
+  return STATUS_OK;
+}
+
+// ∇²V, row by row: the pull-back of one coordinate of ∇V.
+static Status eval_hessian(Foreign *foreign, const OverlapBatch *batch) {
+  enum { SIZE = OVERLAP_PAIR_SIZE };
+  OverlapForeignRequest *request = &foreign->request;
+  TRY(overlap_foreign_request_reserve(request, request->count, BY_VOLUME | BY_GRADIENT | SLOPE));
+  double *by_volume = request->arrays[OVERLAP_FOREIGN_BY_VOLUME];
+  double *by_gradient = request->arrays[OVERLAP_FOREIGN_BY_GRADIENT];
+  for (size_t r = 0; r < SIZE; r++) {
+    memset(by_volume, 0, request->count * sizeof *by_volume);
+    memset(by_gradient, 0, SIZE * request->count * sizeof *by_gradient);
+    for (size_t k = 0; k < request->count; k++) by_gradient[SIZE * k + r] = 1;
+    TRY(overlap_foreign_request_pull(request, &foreign->port, foreign->name, BY_GRADIENT));
+    for (size_t k = 0; k < request->count; k++) {
+      const size_t i = (size_t)foreign->rows[k];
+      const double *row = request->arrays[OVERLAP_FOREIGN_SLOPE] + SIZE * k;
+      if (!are_finite(SIZE, row)) return fail_not_finite(foreign, (int)i, "a second derivative of it");
+      if (batch->volume[i] > 0) memcpy(batch->hessian + SIZE * SIZE * i + SIZE * r, row, SIZE * sizeof *row);
+    }
   }
   return STATUS_OK;
 }
 
 static Status eval(Foreign *foreign, const OverlapBatch *batch) {
-  Asked *asked = &foreign->asked;
-  const bool is_wanted[ARRAYS] = {[PAIRS] = true,
-                                  [VOLUME] = true,
-                                  [GRADIENT] = batch->gradient != NULL,
-                                  [CENTROID] = batch->centroid != NULL};
-  TRY(reserve(asked, (size_t)batch->pair_count, is_wanted));
-  choose(foreign, asked, batch);
-  if (asked->count == 0) return STATUS_OK;
-  Status status = ask(foreign, is_wanted);
-  for (int k = 0; k < asked->count && !status; k++) status = give(foreign, asked, batch, k);
-  return status;
+  const bool tells = wants_origins(foreign) && batch->origins.elements;
+  const unsigned wanted = PAIRS | VOLUME | (batch->gradient ? GRADIENT : 0) |
+                          (batch->centroid ? CENTROID : 0) | (tells ? REST : 0);
+  TRY(reserve(foreign, batch->pair_count, wanted));
+  choose(foreign, batch);
+  if (foreign->request.count == 0) return STATUS_OK;
+  if (tells) tell_origins(foreign, &batch->origins);
+  TRY(overlap_foreign_request_ask(&foreign->request, &foreign->port, foreign->name, wanted));
+  for (size_t k = 0; k < foreign->request.count; k++) TRY(give(foreign, batch, k));
+  return batch->hessian ? eval_hessian(foreign, batch) : STATUS_OK;
 }
 
 static Status eval_batch(const void *self, const OverlapBatch *batch) {
@@ -200,40 +198,73 @@ static Status eval_pair(const void *self, const double pair[24], const OverlapAn
   return eval_batch(self, &one);
 }
 
-// V, where it is wanted, and array `what` of all pairs as they stand.
-static Status eval_all(Foreign *foreign, int count, const double *pairs, double *volumes, int what,
-                       double *numbers) {
-  Asked *asked = &foreign->asked;
+// V, where it is wanted, and one more array of all pairs as they stand.
+static Status eval_all(Foreign *foreign, int count, const double *pairs, double *volumes,
+                       OverlapForeignArray array, double *numbers) {
+  OverlapForeignRequest *request = &foreign->request;
   const size_t bytes = (size_t)count * sizeof(double);
-  const bool is_wanted[ARRAYS] = {
-      [PAIRS] = true, [VOLUME] = true, [LOGIT] = what == LOGIT, [DOUBT] = what == DOUBT};
-  TRY(reserve(asked, (size_t)count, is_wanted));
-  memcpy(asked->arrays[PAIRS], pairs, OVERLAP_PAIR_SIZE * bytes);
-  asked->count = count;
-  TRY(ask(foreign, is_wanted));
-  memcpy(numbers, asked->arrays[what], bytes);
-  if (volumes) memcpy(volumes, asked->arrays[VOLUME], bytes);
+  const unsigned wanted = PAIRS | VOLUME | 1u << array;
+  TRY(overlap_foreign_request_reserve(request, (size_t)count, wanted));
+  memcpy(request->arrays[OVERLAP_FOREIGN_PAIRS], pairs, OVERLAP_PAIR_SIZE * bytes);
+  request->count = (size_t)count;
+  TRY(overlap_foreign_request_ask(request, &foreign->port, foreign->name, wanted));
+  memcpy(numbers, request->arrays[array], bytes);
+  if (volumes) memcpy(volumes, request->arrays[OVERLAP_FOREIGN_VOLUME], bytes);
   for (int i = 0; i < count; i++)
-    if (!isfinite(numbers[i])) return fail_not_finite(foreign, i, what == LOGIT ? "its logit" : "its doubt");
+    if (!isfinite(numbers[i]))
+      return fail_not_finite(foreign, i, array == OVERLAP_FOREIGN_LOGIT ? "its logit" : "its doubt");
   return STATUS_OK;
 }
 
-static Status eval_all_locked(const void *self, int count, const double *pairs, double *volumes, int what,
-                              double *numbers) {
+static Status eval_all_locked(const void *self, int count, const double *pairs, double *volumes,
+                              OverlapForeignArray array, double *numbers) {
   Foreign *foreign = (Foreign *)self;
   if (count == 0) return STATUS_OK;
   pthread_mutex_lock(&foreign->lock);
-  Status status = eval_all(foreign, count, pairs, volumes, what, numbers);
+  Status status = eval_all(foreign, count, pairs, volumes, array, numbers);
   pthread_mutex_unlock(&foreign->lock);
   return status;
 }
 
 static Status eval_logits(const void *self, int count, const double *pairs, double *logits) {
-  return eval_all_locked(self, count, pairs, NULL, LOGIT, logits);
+  return eval_all_locked(self, count, pairs, NULL, OVERLAP_FOREIGN_LOGIT, logits);
 }
 
 static Status eval_bounds(const void *self, int count, const double *pairs, double *volumes, double *bounds) {
-  return eval_all_locked(self, count, pairs, volumes, DOUBT, bounds);
+  return eval_all_locked(self, count, pairs, volumes, OVERLAP_FOREIGN_DOUBT, bounds);
+}
+
+static Status pull(Foreign *foreign, const OverlapPull *asked) {
+  enum { SIZE = OVERLAP_PAIR_SIZE };
+  OverlapForeignRequest *request = &foreign->request;
+  double **arrays = request->arrays;
+  const unsigned wanted = PAIRS | BY_VOLUME | (asked->by_centroid ? BY_CENTROID : 0) |
+                          (asked->by_gradient ? BY_GRADIENT : 0) | SLOPE;
+  TRY(reserve(foreign, asked->pair_count, wanted));
+  memset(asked->slope, 0, (size_t)asked->pair_count * SIZE * sizeof *asked->slope);
+  request->count = 0;
+  for (int i = 0; i < asked->pair_count; i++)
+    if (!answer_unasked(foreign, asked->pairs + SIZE * (size_t)i))
+      append(foreign, i, asked->pairs + SIZE * (size_t)i);
+  if (request->count == 0) return STATUS_OK;
+  gather(foreign, 1, asked->by_volume, arrays[OVERLAP_FOREIGN_BY_VOLUME]);
+  if (asked->by_centroid) gather(foreign, 3, asked->by_centroid, arrays[OVERLAP_FOREIGN_BY_CENTROID]);
+  if (asked->by_gradient) gather(foreign, SIZE, asked->by_gradient, arrays[OVERLAP_FOREIGN_BY_GRADIENT]);
+  TRY(overlap_foreign_request_pull(request, &foreign->port, foreign->name, wanted));
+  for (size_t k = 0; k < request->count; k++) {
+    const double *slope = arrays[OVERLAP_FOREIGN_SLOPE] + SIZE * k;
+    if (!are_finite(SIZE, slope)) return fail_not_finite(foreign, foreign->rows[k], "its pull-back");
+    memcpy(asked->slope + SIZE * (size_t)foreign->rows[k], slope, SIZE * sizeof *slope);
+  }
+  return STATUS_OK;
+}
+
+static Status eval_pull(const void *self, const OverlapPull *asked) {
+  Foreign *foreign = (Foreign *)self;
+  pthread_mutex_lock(&foreign->lock);
+  Status status = pull(foreign, asked);
+  pthread_mutex_unlock(&foreign->lock);
+  return status;
 }
 
 static const OverlapOps standard = {
@@ -246,6 +277,8 @@ static const OverlapOps standard = {
     .rejects_disjoint = true,
     .has_centroid = has_centroid,
     .has_gradient = has_gradient,
+    .has_hessian = has_hessian,
+    .wants_origins = wants_origins,
 };
 
 static Status open_port(OverlapForeignPort *port, const char *word) {
@@ -285,6 +318,7 @@ Status overlap_foreign_create(void **self, const OverlapOps **ops, const char *w
   }
   if (foreign->port.gives & TETLAP_MODEL_LOGIT) foreign->ops.eval_logits = eval_logits;
   if (foreign->port.gives & TETLAP_MODEL_DOUBT) foreign->ops.eval_bounds = eval_bounds;
+  if (foreign->port.pull) foreign->ops.eval_pull = eval_pull;
   *self = foreign, *ops = &foreign->ops;
   return STATUS_OK;
 }

@@ -6,7 +6,8 @@
 //   there as it stands (TETLAP_MODEL_DISJOINT), or where the options keep ghosts.
 // - V below 0 becomes 0, its gradient too, and is flagged OVERLAP_UNSOUND; so is V above the smaller
 //   tetrahedron, which stays.
-// - A number that is not finite is an error that names the pair; so is one written beyond the end of an array.
+// - A number that is not finite is an error that names the pair; so is one written beyond the end of an
+// array.
 // - It gets copies: what it does to the pairs it was given changes nothing of the caller's.
 #ifndef TETLAP_OVERLAP_FOREIGN_FOREIGN_H
 #define TETLAP_OVERLAP_FOREIGN_FOREIGN_H

@@ -3,6 +3,8 @@
 
 #include <dlfcn.h>
 #include <errno.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -23,14 +25,32 @@ static void close_library(void *self) {
   memory_free(library);
 }
 
+static Status fail_with(const Library *library, int failed, const char *why) {
+  return status_fail(STATUS_SOLVER, "%s: the model failed with %d%s%s", library->path, failed,
+                     why[0] ? ": " : "", why);
+}
+
 static Status ask(void *self, const TetlapModelBatch *batch) {
   Library *library = self;
   char why[1024] = "";
   int failed = library->model->evaluate(library->self, batch, why, sizeof why);
   why[sizeof why - 1] = 0;
-  if (!failed) return STATUS_OK;
-  return status_fail(STATUS_SOLVER, "%s: the model failed with %d%s%s", library->path, failed,
-                     why[0] ? ": " : "", why);
+  return failed ? fail_with(library, failed, why) : STATUS_OK;
+}
+
+static Status pull(void *self, const TetlapModelPull *asked) {
+  Library *library = self;
+  char why[1024] = "";
+  int failed = library->model->pull_back(library->self, asked, why, sizeof why);
+  why[sizeof why - 1] = 0;
+  return failed ? fail_with(library, failed, why) : STATUS_OK;
+}
+
+// A struct of the header's first version ends before `pull_back`.
+static const size_t FIRST_SIZE = offsetof(TetlapModel, pull_back);
+
+static bool has_pull(const TetlapModel *model) {
+  return model->size >= sizeof *model && model->pull_back;
 }
 
 // A path without a slash would be looked for where the system's libraries are.
@@ -55,7 +75,7 @@ static Status check(const Library *library) {
     return status_fail(STATUS_INPUT,
                        "%s: was built for version %u of tetlap/model.h, this program has %d: build it again",
                        library->path, (unsigned)model->abi, TETLAP_MODEL_ABI);
-  if (model->size < sizeof *model || !model->evaluate)
+  if (model->size < FIRST_SIZE || !model->evaluate)
     return status_fail(STATUS_INPUT, "%s: its TetlapModel has %s", library->path,
                        model->evaluate ? "no `size = sizeof(TetlapModel)`" : "no `evaluate`");
   return STATUS_OK;
@@ -98,7 +118,10 @@ Status overlap_foreign_library_open(OverlapForeignPort *port, const char *path) 
     close_library(library);
     return status;
   }
-  *port = (OverlapForeignPort){
-      .self = library, .gives = library->model->gives, .ask = ask, .close = close_library};
+  *port = (OverlapForeignPort){.self = library,
+                               .gives = library->model->gives,
+                               .ask = ask,
+                               .pull = has_pull(library->model) ? pull : NULL,
+                               .close = close_library};
   return STATUS_OK;
 }

@@ -13,6 +13,7 @@ typedef struct OverlapForeignPort {
   // Fills what the batch wants. STATUS_SOLVER: the model failed; the message has its own words.
   // STATUS_DEVICE: it is no longer there. STATUS_INTERRUPTED. One call at a time.
   Status (*ask)(void *self, const TetlapModelBatch *batch);
+  Status (*pull)(void *self, const TetlapModelPull *pull); // likewise; NULL: it cannot
   void (*close)(void *self);
 } OverlapForeignPort;
 

@@ -252,14 +252,18 @@ static Status ask(void *self, const TetlapModelBatch *batch) {
   return STATUS_OK;
 }
 
+// What the protocol knows of a model.
+static const uint32_t ARRAYS_OF_IT = TETLAP_MODEL_GRADIENT | TETLAP_MODEL_CENTROID | TETLAP_MODEL_LOGIT |
+                                     TETLAP_MODEL_DOUBT | TETLAP_MODEL_DISJOINT;
+
 static Status greet(Process *process, OverlapForeignPort *port) {
   const uint64_t request[WORDS] = {HELLO, VERSION, process->capacity, 0};
   uint64_t reply[WORDS];
   char text[4096];
   TRY(exchange(process, request, reply, text, sizeof text));
   if (reply[0]) return fail_told(process, STATUS_INPUT, text);
-  *port =
-      (OverlapForeignPort){.self = process, .gives = (uint32_t)reply[2], .ask = ask, .close = close_process};
+  *port = (OverlapForeignPort){
+      .self = process, .gives = (uint32_t)reply[2] & ARRAYS_OF_IT, .ask = ask, .close = close_process};
   return STATUS_OK;
 }
 

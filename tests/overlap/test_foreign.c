@@ -217,6 +217,89 @@ START_TEST(what_a_model_does_to_its_pairs_stays_with_it) {
 }
 END_TEST
 
+// Of V = 1e-3 Σ x² and x̄ = the mean of the vertices; pairs that are disjoint have no derivatives.
+START_TEST(a_pull_back_gives_the_gradient_the_hessian_and_that_of_the_centroid) {
+  OverlapModel model;
+  static double hessian[PAIRS][24][24], by_volume[PAIRS], by_centroid[PAIRS][3], slope[PAIRS][24];
+  open_model(&model, TETLAP_MODEL_13);
+  ck_assert(overlap_model_has_gradient(&model) && overlap_model_has_hessian(&model));
+  OverlapBatch batch = batch_of(PAIRS, true, true);
+  batch.hessian = hessian[0][0];
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  for (int i = 0; i < PAIRS; i++) {
+    by_volume[i] = i;
+    for (int c = 0; c < 3; c++) by_centroid[i][c] = c - 0.5 * i;
+  }
+  ck_assert_ok(model.ops->eval_pull(model.self, &(OverlapPull){.pair_count = PAIRS,
+                                                               .pairs = pairs[0],
+                                                               .by_volume = by_volume,
+                                                               .by_centroid = by_centroid[0],
+                                                               .by_gradient = pairs[0],
+                                                               .slope = slope[0]}));
+  int asked = 0;
+  for (int i = 0; i < PAIRS; i++) {
+    const double is_asked = !(flags[i] & OVERLAP_DISJOINT);
+    asked += is_asked > 0;
+    for (int v = 0; v < 24; v++) {
+      const double x = pairs[i][v];
+      ck_assert_near(gradient[i][v], is_asked * 2e-3 * x, 1e-18);
+      for (int w = 0; w < 24; w++) ck_assert_near(hessian[i][v][w], is_asked * 2e-3 * (v == w), 1e-18);
+      ck_assert_near(slope[i][v], is_asked * (2e-3 * x * (i + 1) + by_centroid[i][v % 3] / 8), 1e-12);
+    }
+  }
+  ck_assert(asked > PAIRS / 10 && asked < PAIRS);
+  overlap_model_destroy(&model);
+  open_model(&model, TETLAP_MODEL_0);
+  ck_assert(!model.ops->eval_pull && !overlap_model_has_hessian(&model));
+  overlap_model_destroy(&model);
+}
+END_TEST
+
+// What a command prints; its exit code.
+static int run_program(const char *words, char text[20000]) {
+  char command[2000];
+  snprintf(command, sizeof command, "{ %s %s; } 2>&1", TETLAP_PROGRAM, words);
+  FILE *stream = popen(command, "r");
+  ck_assert_ptr_nonnull(stream);
+  text[fread(text, 1, 19999, stream)] = 0;
+  int how = pclose(stream);
+  return WIFEXITED(how) ? WEXITSTATUS(how) : -1;
+}
+
+// The worst of what `stress --pairs` finds of derivatives.
+static double stressed(const char *model) {
+  char text[20000], words[1000], folder[] = "/tmp/tetlap-foreign-XXXXXX";
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  snprintf(words, sizeof words,
+           "stress --pairs --quick --only uniform --overlap %s -j %s/it.json; cat %s/it.json; rm -r %s",
+           model, folder, folder, folder);
+  run_program(words, text);
+  const char *name = strstr(text, "\"gradient\"");
+  const char *at = name ? strstr(name, "\"value\"") : NULL;
+  ck_assert_msg(at != NULL, "%s", text);
+  return strtod(strchr(at, ':') + 1, NULL);
+}
+
+START_TEST(stress_holds_the_pull_back_of_centroids_to_differences) {
+  ck_assert(stressed(TETLAP_MODEL_13) < 1e-7);
+  ck_assert_near(stressed(TETLAP_MODEL_14), 1, 1e-6); // by as much is one coordinate wrong
+}
+END_TEST
+
+START_TEST(a_library_is_told_where_a_scenes_pairs_are_from) {
+  char text[20000], folder[] = "/tmp/tetlap-foreign-XXXXXX", words[1000];
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  snprintf(words, sizeof words,
+           "run %s/examples/02_two_blocks.yaml --set time.end=0.1 --set output.vtu=false --overlap %s -o "
+           "%s; rm -r %s",
+           TETLAP_SOURCE_DIR, TETLAP_MODEL_15, folder, folder);
+  run_program(words, text);
+  const char *told = strstr(text, "told of ");
+  ck_assert_msg(told && strstr(text, "trouble:     none"), "%s", text);
+  ck_assert_int_gt(atoi(told + strlen("told of ")), 100);
+}
+END_TEST
+
 // Below 0 is no volume: nothing pushes. Above the smaller tetrahedron is no volume either, but a push.
 START_TEST(volumes_that_none_can_have_are_flagged) {
   OverlapModel model;
@@ -558,6 +641,9 @@ int main(void) {
   tcase_add_test(cases, what_is_written_beyond_an_array_ends_the_run);
   tcase_add_test(cases, the_example_writes_what_it_is_asked_for_and_no_more);
   tcase_add_test(cases, what_a_model_does_to_its_pairs_stays_with_it);
+  tcase_add_test(cases, a_pull_back_gives_the_gradient_the_hessian_and_that_of_the_centroid);
+  tcase_add_test(cases, stress_holds_the_pull_back_of_centroids_to_differences);
+  tcase_add_test(cases, a_library_is_told_where_a_scenes_pairs_are_from);
   tcase_add_test(cases, volumes_that_none_can_have_are_flagged);
   tcase_add_test(cases, flat_and_disjoint_pairs_are_not_asked_for_unless_ghosts_are_kept);
   tcase_add_test(cases, a_python_function_answers_with_all_that_it_has);

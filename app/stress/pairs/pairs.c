@@ -139,6 +139,33 @@ static Status compare_differences(Asked *asked, const DatagenHardPair *pair, con
   return STATUS_OK;
 }
 
+// The pull-back of a coordinate of x̄ against central differences; a pair that shares less than a thousandth
+// has an x̄ that rounding moves.
+static Status compare_pull(Asked *asked, const DatagenHardPair *pair, double volume, int step) {
+  const OverlapOps *ops = asked->model->ops;
+  if (!ops->eval_pull || !overlap_model_has_own_centroid(asked->model) || !pair->is_smooth ||
+      !(volume > 1e-3 * overlap_invariant_smaller_volume(pair->x)))
+    return STATUS_OK;
+  const double none = 0, along[3] = {2.0 / 3, -1.0 / 3, 2.0 / 3},
+               h = 1e-6 * overlap_invariant_extent(pair->x);
+  double slope[24];
+  TRY(ops->eval_pull(
+      asked->model->self,
+      &(OverlapPull){
+          .pair_count = 1, .pairs = pair->x, .by_volume = &none, .by_centroid = along, .slope = slope}));
+  for (int i = 0; i < 24; i += step) {
+    double sides[2][24], volumes[2], centroids[2][3], change = 0;
+    memcpy(sides[0], pair->x, sizeof sides[0]), memcpy(sides[1], pair->x, sizeof sides[1]);
+    sides[0][i] -= h, sides[1][i] += h;
+    TRY(overlap_model_eval(
+        asked->model,
+        &(OverlapBatch){.pair_count = 2, .pairs = sides[0], .volume = volumes, .centroid = centroids[0]}));
+    for (int c = 0; c < 3; c++) change += along[c] * (centroids[1][c] - centroids[0][c]);
+    keep_worst(&asked->worst.gradient, fabs(change / (sides[1][i] - sides[0][i]) - slope[i]));
+  }
+  return STATUS_OK;
+}
+
 static bool flags_are_right(const DatagenHardPair *pair, const Answer *answer) {
   bool is_flat = (answer->flags & OVERLAP_FLAT) != 0;
   bool is_nothing = is_flat || (answer->flags & OVERLAP_DISJOINT);
@@ -174,6 +201,7 @@ static Status ask_member(Asked *asked, const DatagenHardPair *pair, bool is_slow
   TRY(compare_orders(asked, x, answer.volume, is_slow ? 11 : 1));
   TRY(compare_motions(asked, x, answer.volume));
   TRY(compare_parts(asked, pair, answer.volume));
+  TRY(compare_pull(asked, pair, answer.volume, is_slow ? 7 : 1));
   return compare_differences(asked, pair, answer.gradient, is_slow ? 7 : 1);
 }
 

@@ -18,8 +18,18 @@ enum {
   TOO_LARGE,
   SILENT,
   TOO_MANY,
-  SPOILS
+  SPOILS,
+  PULLS,
+  PULLS_WRONG,
+  KNOWS
 };
+
+static size_t told_count; // of pairs whose origins were as they should be
+
+static void close_it(void *self) {
+  (void)self;
+  if (WRONG == KNOWS) fprintf(stderr, "told of %zu pairs\n", told_count);
+}
 
 static int open_it(void **self, char *message, size_t size) {
   (void)self;
@@ -38,10 +48,42 @@ static int evaluate(void *self, const TetlapModelBatch *batch, char *message, si
     batch->volume[batch->count] = 1e-3; // a row that is not there
     if (batch->gradient) batch->gradient[24 * batch->count] = 1;
   }
+  // V = 1e-3 Σ x², x̄ the mean of the vertices: their derivatives come by pull_back alone.
+  for (size_t i = 0; (WRONG == PULLS || WRONG == PULLS_WRONG) && i < batch->count; i++) {
+    batch->volume[i] = 0;
+    for (int c = 0; batch->centroid && c < 3; c++) batch->centroid[3 * i + c] = 0;
+    for (int v = 0; v < 24; v++) {
+      const double x = batch->pairs[24 * i + v];
+      batch->volume[i] += 1e-3 * x * x;
+      if (batch->centroid) batch->centroid[3 * i + v % 3] += x / 8;
+    }
+  }
+  // Its volumes are those of the smaller tetrahedron at rest; it fails where it is told something else.
+  for (size_t i = 0; WRONG == KNOWS && i < batch->count; i++) {
+    const int32_t *elements = batch->elements + 2 * i, *bodies = batch->bodies + 2 * i;
+    const double *rest = batch->rest + 2 * i;
+    if (bodies[0] != 0 || bodies[1] != 1 || elements[0] < 0 || elements[1] <= elements[0] ||
+        !(rest[0] > 0 && rest[1] > 0))
+      return 9;
+    told_count++;
+    batch->volume[i] = 1e-9 * (rest[0] < rest[1] ? rest[0] : rest[1]);
+    for (int c = 0; batch->centroid && c < 3; c++) batch->centroid[3 * i + c] = batch->pairs[24 * i + c];
+  }
   if (WRONG == SPOILS) memset((double *)batch->pairs, 0xFF, 24 * batch->count * sizeof(double));
   if (WRONG != EVALUATE_FAILS) return 0;
   snprintf(message, size, "the card fell out");
   return 4;
+}
+
+static int pull_back(void *self, const TetlapModelPull *pull, char *message, size_t size) {
+  (void)self, (void)message, (void)size;
+  for (size_t i = 0; i < 24 * pull->count; i++) {
+    pull->slope[i] = 2e-3 * pull->by_volume[i / 24] * pull->pairs[i];
+    if (pull->by_centroid) pull->slope[i] += pull->by_centroid[3 * (i / 24) + i % 3] / 8;
+    if (pull->by_gradient) pull->slope[i] += 2e-3 * pull->by_gradient[i];
+  }
+  if (WRONG == PULLS_WRONG && pull->by_centroid) pull->slope[0] += 1;
+  return 0;
 }
 
 #if WRONG == 1
@@ -50,11 +92,18 @@ const TetlapModel *another_name(void) {
 #else
 const TetlapModel *tetlap_model(void) {
 #endif
-  static const TetlapModel model = {.size = WRONG == NO_SIZE ? 0 : sizeof model,
-                                    .abi = WRONG == OTHER_ABI ? 99 : TETLAP_MODEL_ABI,
-                                    .name = "wrong",
-                                    .gives = TETLAP_MODEL_GRADIENT,
-                                    .open = open_it,
-                                    .evaluate = WRONG == NO_EVALUATE ? NULL : evaluate};
+  static const TetlapModel model = {
+      .size = WRONG == NO_SIZE   ? 0
+              : WRONG == NOTHING ? offsetof(TetlapModel, pull_back) // an older header's
+                                 : sizeof model,
+      .abi = WRONG == OTHER_ABI ? 99 : TETLAP_MODEL_ABI,
+      .name = "wrong",
+      .gives = WRONG == PULLS || WRONG == PULLS_WRONG ? TETLAP_MODEL_CENTROID | TETLAP_MODEL_CURVATURE
+               : WRONG == KNOWS                       ? TETLAP_MODEL_CENTROID | TETLAP_MODEL_ORIGINS
+                                                      : TETLAP_MODEL_GRADIENT,
+      .open = open_it,
+      .close = close_it,
+      .evaluate = WRONG == NO_EVALUATE ? NULL : evaluate,
+      .pull_back = WRONG == PULLS || WRONG == PULLS_WRONG ? pull_back : NULL};
   return &model;
 }
