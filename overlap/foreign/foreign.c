@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "overlap/clip/clip.h"
 #include "overlap/foreign/library.h"
 #include "overlap/foreign/process.h"
 #include "overlap/foreign/request.h"
@@ -20,8 +21,10 @@ typedef struct Foreign {
   OverlapForeignPort port;
   bool keeps_ghosts;
   pthread_mutex_t lock; // of all below, and of the port
-  int *rows;            // of the batch: those that are asked for  (request.count)
-  size_t row_capacity;
+  int *rows;            // of the batch: those that are asked for            (request.count)
+  double *most;         // the smaller tetrahedron's volume of a pair [m³]   (pair_count)
+  double *clipped;      // V by clipping [m³]                                (pair_count)
+  size_t row_capacity, most_capacity, clipped_capacity;
   OverlapForeignRequest request;
 } Foreign;
 
@@ -34,7 +37,7 @@ static const unsigned PAIRS = 1u << OVERLAP_FOREIGN_PAIRS, VOLUME = 1u << OVERLA
 static void destroy(void *self) {
   Foreign *foreign = self;
   if (foreign->port.close) foreign->port.close(foreign->port.self);
-  memory_free(foreign->rows);
+  memory_free(foreign->rows), memory_free(foreign->most), memory_free(foreign->clipped);
   overlap_foreign_request_destroy(&foreign->request);
   pthread_mutex_destroy(&foreign->lock);
   memory_free(foreign);
@@ -66,17 +69,34 @@ static double volume_of(const double tet[12]) {
   return fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9))) / 6;
 }
 
-// Why a pair is not asked for: its flag; 0: it is asked for.
-static unsigned answer_unasked(const Foreign *foreign, const double pair[24]) {
-  if (!(volume_of(pair) > 0) || !(volume_of(pair + 12) > 0)) return OVERLAP_FLAT;
-  if (foreign->keeps_ghosts || foreign->port.gives & TETLAP_MODEL_DISJOINT) return 0;
+static double smaller_volume(const double pair[OVERLAP_PAIR_SIZE]) {
+  const double a = volume_of(pair), b = volume_of(pair + 12);
+  return a < b ? a : b;
+}
+
+static bool asks_for_all(const Foreign *foreign) {
+  return foreign->keeps_ghosts || foreign->port.gives & TETLAP_MODEL_DISJOINT;
+}
+
+// What clipping finds so much of, as a share of the smaller tetrahedron, does overlap.
+static const double CERTAIN_SHARE = 1e-6;
+
+// Why a pair is not asked for: its flag; 0: it is asked for. `clipped`: V by clipping, NAN: not known. It
+// only saves time: the separating axes of a pair that overlaps take ten times as long.
+static unsigned answer_unasked(const Foreign *foreign, const double pair[OVERLAP_PAIR_SIZE], double most,
+                               double clipped) {
+  if (!(most > 0)) return OVERLAP_FLAT;
+  if (asks_for_all(foreign) || clipped > CERTAIN_SHARE * most) return 0;
   return overlap_separation_pair(pair, 0) >= 0 ? OVERLAP_DISJOINT : 0;
 }
 
 static Status reserve(Foreign *foreign, int count, unsigned wanted) {
-  if (!memory_reserve((void **)&foreign->rows, &foreign->row_capacity, (size_t)count, sizeof(int)))
+  const size_t size = (size_t)count;
+  if (!memory_reserve((void **)&foreign->rows, &foreign->row_capacity, size, sizeof(int)) ||
+      !memory_reserve((void **)&foreign->most, &foreign->most_capacity, size, sizeof(double)) ||
+      !memory_reserve((void **)&foreign->clipped, &foreign->clipped_capacity, size, sizeof(double)))
     return status_no_memory("pairs for a model");
-  return overlap_foreign_request_reserve(&foreign->request, (size_t)count, wanted);
+  return overlap_foreign_request_reserve(&foreign->request, size, wanted);
 }
 
 static void append(Foreign *foreign, int row, const double pair[OVERLAP_PAIR_SIZE]) {
@@ -87,13 +107,20 @@ static void append(Foreign *foreign, int row, const double pair[OVERLAP_PAIR_SIZ
 }
 
 static void choose(Foreign *foreign, const OverlapBatch *batch) {
+  // Clipping refuses coordinates that the axes do not; then they decide alone.
+  const bool is_clipped =
+      !asks_for_all(foreign) &&
+      overlap_clip_ops.eval_batch(NULL, &(OverlapBatch){.pair_count = batch->pair_count,
+                                                        .pairs = batch->pairs,
+                                                        .volume = foreign->clipped}) == STATUS_OK;
   foreign->request.count = 0;
   for (int i = 0; i < batch->pair_count; i++) {
     unsigned flags = 0;
     const double *pair = batch->pairs + (size_t)i * OVERLAP_PAIR_SIZE;
     OverlapAnswer answer = overlap_ops_answer(batch, i, &flags);
     overlap_ops_write_nothing(&answer);
-    *answer.flags = answer_unasked(foreign, pair);
+    foreign->most[i] = smaller_volume(pair);
+    *answer.flags = answer_unasked(foreign, pair, foreign->most[i], is_clipped ? foreign->clipped[i] : NAN);
     if (!*answer.flags) append(foreign, i, pair);
   }
 }
@@ -129,12 +156,10 @@ static Status give(const Foreign *foreign, const OverlapBatch *batch, size_t at)
   const int i = foreign->rows[at];
   unsigned flags = 0;
   OverlapAnswer answer = overlap_ops_answer(batch, i, &flags);
-  const double *pair = batch->pairs + (size_t)i * OVERLAP_PAIR_SIZE;
   double *const *arrays = foreign->request.arrays;
   const double volume = arrays[OVERLAP_FOREIGN_VOLUME][at];
   if (!isfinite(volume)) return fail_not_finite(foreign, i, "its volume");
-  const double most = fmin(volume_of(pair), volume_of(pair + 12));
-  if (volume < 0 || volume > most * (1 + 1e-9)) *answer.flags |= OVERLAP_UNSOUND;
+  if (volume < 0 || volume > foreign->most[i] * (1 + 1e-9)) *answer.flags |= OVERLAP_UNSOUND;
   if (!(volume > 0)) return STATUS_OK;
   *answer.volume = volume;
   if (answer.gradient) {
@@ -243,9 +268,10 @@ static Status pull(Foreign *foreign, const OverlapPull *asked) {
   TRY(reserve(foreign, asked->pair_count, wanted));
   memset(asked->slope, 0, (size_t)asked->pair_count * SIZE * sizeof *asked->slope);
   request->count = 0;
-  for (int i = 0; i < asked->pair_count; i++)
-    if (!answer_unasked(foreign, asked->pairs + SIZE * (size_t)i))
-      append(foreign, i, asked->pairs + SIZE * (size_t)i);
+  for (int i = 0; i < asked->pair_count; i++) {
+    const double *pair = asked->pairs + SIZE * (size_t)i;
+    if (!answer_unasked(foreign, pair, smaller_volume(pair), NAN)) append(foreign, i, pair);
+  }
   if (request->count == 0) return STATUS_OK;
   gather(foreign, 1, asked->by_volume, arrays[OVERLAP_FOREIGN_BY_VOLUME]);
   if (asked->by_centroid) gather(foreign, 3, asked->by_centroid, arrays[OVERLAP_FOREIGN_BY_CENTROID]);

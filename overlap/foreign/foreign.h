@@ -2,8 +2,9 @@
 // A model of the user's as an overlap model: what every model owes the program, round what a port gives.
 //
 // - A pair with a flat tetrahedron, and one whose tetrahedra share no volume, is answered by 0, unasked. The
-//   second by the separating axis theorem (overlap/separation.h); not where the model says that its V is 0
-//   there as it stands (TETLAP_MODEL_DISJOINT), or where the options keep ghosts.
+//   second by the separating axis theorem (overlap/separation.h), where clipping finds no volume; not where
+//   the model says that its V is 0 there as it stands (TETLAP_MODEL_DISJOINT), or where the options keep
+//   ghosts.
 // - V below 0 becomes 0, its gradient too, and is flagged OVERLAP_UNSOUND; so is V above the smaller
 //   tetrahedron, which stays.
 // - A number that is not finite is an error that names the pair; so is one written beyond the end of an

@@ -387,6 +387,39 @@ START_TEST(a_python_function_answers_with_all_that_it_has) {
 }
 END_TEST
 
+// The example of a command has a sixth of what the Python function above has.
+START_TEST(a_command_answers_as_a_function_does) {
+  enum { MANY = 3000 }; // more than the memory has room for at first
+  OverlapModel model;
+  static double x[MANY][24], v[MANY], middles[MANY][3];
+  for (int i = 0; i < MANY; i++) memcpy(x[i], pairs[i % PAIRS], sizeof *x);
+  open_model(&model, "exec:" TETLAP_MODEL_SERVE);
+  for (int count = 10; count <= MANY; count *= 300) {
+    OverlapBatch batch = {.pair_count = count, .pairs = x[0], .volume = v, .centroid = middles[0]};
+    ck_assert_ok(overlap_model_eval(&model, &batch));
+    int shared = 0;
+    for (int i = 0; i < count; i++) {
+      double product = 1.0 / 6;
+      if (v[i] == 0) continue;
+      shared++;
+      for (int c = 0; c < 3; c++) {
+        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        for (int k = 0; k < 8; k++) {
+          low[k / 4] = fmin(low[k / 4], x[i][3 * k + c]);
+          high[k / 4] = fmax(high[k / 4], x[i][3 * k + c]);
+        }
+        double from = fmax(low[0], low[1]), to = fmin(high[0], high[1]);
+        product *= to - from;
+        ck_assert_double_eq(middles[i][c], (from + to) / 2);
+      }
+      ck_assert_near(v[i], product, 1e-15);
+    }
+    ck_assert_int_gt(shared, 1);
+  }
+  overlap_model_destroy(&model);
+}
+END_TEST
+
 // More pairs than the memory that is shared at first has room for.
 START_TEST(the_shared_memory_grows) {
   enum { MANY = 5000 };
@@ -647,6 +680,7 @@ int main(void) {
   tcase_add_test(cases, volumes_that_none_can_have_are_flagged);
   tcase_add_test(cases, flat_and_disjoint_pairs_are_not_asked_for_unless_ghosts_are_kept);
   tcase_add_test(cases, a_python_function_answers_with_all_that_it_has);
+  tcase_add_test(cases, a_command_answers_as_a_function_does);
   tcase_add_test(cases, the_shared_memory_grows);
   tcase_add_test(cases, python_that_is_wrong);
   tcase_add_test(cases, a_reply_that_comes_too_late_answers_no_other_request);

@@ -203,6 +203,7 @@ TABLES = {
                       by_quantity("pairs_per_cpu_second", ("near",), ("V", "V+centroid", "V+grad")), 1),
     "unseen": Bench([["tetlap", "bench", "unseen", "-m", LEARNED, "--seeds", "3", "--json"]], unseen, 6),
     "learned": Bench([["tools/measure/learned", "{program}"]], as_told, 10),
+    "own-models": Bench([["tools/measure/own", "{program}"]], as_told, 2),
     "precision": Bench([["tools/measure/precision", "--program", "{program}", "-m", "clip,geo,geo-small,hybrid", *(f"examples/precision/{name}.yaml"
                         for name in ("blocks", "collision", "edge", "landing", "press", "spheres"))]], as_told, 30),
     "time": Bench([["tools/measure/time_errors", "--program", "{program}", "--finer", "10"]], as_told, 20),
