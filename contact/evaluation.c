@@ -135,7 +135,7 @@ static Status sift_by_boxes(ContactEvaluation *evaluation, const ContactLayout *
   if (!memory_reserve((void **)&evaluation->is_kept, &evaluation->kept_capacity, (size_t)count, 1))
     return status_no_memory("candidate pairs");
   contact_candidates_bound(candidates, layout, positions, evaluation->boxes);
-#pragma omp parallel for schedule(static) reduction(+ : kept) if (count > 512)
+#pragma omp parallel for schedule(static) reduction(+ : kept) if (count > 8192)
   for (int k = 0; k < count; k++) {
     const int *cells = candidates->pairs[k].cells;
     evaluation->is_kept[k] =
@@ -206,7 +206,7 @@ static Status sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *
   }
   evaluation->pair_count = kept;
   TRY(reserve(evaluation, layout, kept));
-#pragma omp parallel for schedule(static) if (kept > 512)
+#pragma omp parallel for schedule(static) if (kept > 2048)
   for (int k = 0; k < kept; k++)
     contact_layout_gather_pair(layout, &evaluation->pairs[k], positions,
                                evaluation->coordinates + 24 * (size_t)k);

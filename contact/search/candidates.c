@@ -94,7 +94,7 @@ static void measure(ContactCandidates *candidates, const ContactLayout *layout, 
 static void expect_motions(ContactCandidates *candidates, const ContactLayout *layout, double time,
                            const double *velocities, double step) {
   const ContactSystemDef *def = &layout->def;
-#pragma omp parallel for schedule(static) if (def->vertex_count > 2048)
+#pragma omp parallel for schedule(static) if (def->vertex_count > 8192)
   for (int b = 0; b < def->body_count; b++) {
     ContactMotion *motion = &candidates->expected[b];
     *motion = contact_motion_of(velocities, NULL, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);
@@ -108,7 +108,7 @@ static void expect_motions(ContactCandidates *candidates, const ContactLayout *l
 
 void contact_candidates_bound(const ContactCandidateList *list, const ContactLayout *layout,
                               const double *positions, double (*boxes)[6]) {
-#pragma omp parallel for schedule(static) if (list->cell_count > 512)
+#pragma omp parallel for schedule(static) if (list->cell_count > 4096)
   for (int k = 0; k < list->cell_count; k++)
     contact_bounds_of_tet(layout->mesh.cells[list->cells[k]], positions, boxes[list->cells[k]]);
 }
@@ -150,7 +150,7 @@ static bool wants_search(const ContactCandidates *candidates, const ContactLayou
 
 static void bound_bodies(ContactCandidates *candidates, const ContactLayout *layout,
                          const double *positions) {
-#pragma omp parallel for schedule(static) if (layout->def.vertex_count > 2048)
+#pragma omp parallel for schedule(static) if (layout->def.vertex_count > 8192)
   for (int b = 0; b < layout->def.body_count; b++) {
     double *box = candidates->boxes[b];
     for (int c = 0; c < 3; c++) box[c] = INFINITY, box[c + 3] = -INFINITY;

@@ -32,7 +32,7 @@ ContactMotion contact_motion_of_shape(double way) {
 void contact_motion_measure(const ContactLayout *layout, double reference_time, const double *reference,
                             double time, const double *positions, ContactMotion *motions) {
   const ContactSystemDef *def = &layout->def;
-#pragma omp parallel for schedule(static) if (def->vertex_count > 2048)
+#pragma omp parallel for schedule(static) if (def->vertex_count > 8192)
   for (int b = 0; b < def->body_count; b++)
     motions[b] =
         contact_motion_of(positions, reference, def->bodies[b].vertex_begin, def->bodies[b].vertex_end);

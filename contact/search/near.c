@@ -87,7 +87,7 @@ static void bound(const double x[12], double box[6]) {
 
 static void blow_up_cells(ContactNear *near, const ContactLayout *layout,
                           const ContactCandidateList *candidates, const double *positions) {
-#pragma omp parallel for schedule(static) if (candidates->cell_count > 512)
+#pragma omp parallel for schedule(static) if (candidates->cell_count > 1024)
   for (int k = 0; k < candidates->cell_count; k++) {
     int cell = candidates->cells[k];
     blow_up(layout, cell, positions, near->skin / 2, near->blown[cell]);
@@ -117,7 +117,7 @@ static void mark_portion(ContactNear *near, const ContactPair *pairs, int begin,
 }
 
 static void mark(ContactNear *near, const ContactCandidateList *candidates) {
-#pragma omp parallel for schedule(static) if (candidates->count > 512)
+#pragma omp parallel for schedule(static) if (candidates->count > 2048)
   for (int begin = 0; begin < candidates->count; begin += PORTION_SIZE) {
     int left = candidates->count - begin;
     mark_portion(near, candidates->pairs, begin, begin + (left < PORTION_SIZE ? left : PORTION_SIZE));

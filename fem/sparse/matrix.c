@@ -12,6 +12,9 @@
 // Entries of a piece of a product: a quarter of a megabyte to be read. A matrix with fewer is one piece.
 enum { PIECE_SIZE = 32768 };
 
+// Fewer are multiplied before another thread is awake.
+enum { FEW_ENTRIES = 150000 };
+
 // Rows of a vertex that an earlier piece of a product has added to.
 typedef struct FemMatrixGift {
   int from, to; // in `kept`, in y
@@ -542,7 +545,7 @@ static void take_gifts(const FemMatrixBlocks *blocks, int p, double *y) {
 
 void fem_matrix_multiply(const FemMatrix *matrix, const double *x, double *y) {
   const FemMatrixBlocks *blocks = matrix->blocks;
-#pragma omp parallel if (blocks->piece_count > 1)
+#pragma omp parallel if (matrix->entry_count > FEW_ENTRIES)
   {
 #pragma omp for schedule(static)
     for (int p = 0; p < blocks->piece_count; p++) spread_piece(matrix, p, x, y);

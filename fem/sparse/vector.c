@@ -74,13 +74,35 @@ static double square_piece(int n, const double *x, const double *w) {
   return add_lanes(sums) + rest;
 }
 
-static double sum_pieces(int n, double (*piece_of)(int n, const double *x, const double *y), const double *x,
-                         const double *y) {
-  double partial[MOST], sum = 0;
+static double larger(double a, double b) {
+  return b > a ? b : a;
+}
+
+static double largest_piece(int n, const double *x, const double *unused) {
+  double most[LANES] = {0}, largest = 0;
+  int i = 0;
+  (void)unused;
+  for (; i + LANES <= n; i += LANES)
+    for (int k = 0; k < LANES; k++) most[k] = larger(most[k], fabs(x[i + k]));
+  for (; i < n; i++) largest = larger(largest, fabs(x[i]));
+  for (int k = 0; k < LANES; k++) largest = larger(largest, most[k]);
+  return largest;
+}
+
+typedef double PieceOf(int n, const double *x, const double *y);
+
+// Of each piece; how many there are.
+static int find_pieces(int n, PieceOf *piece_of, const double *x, const double *y, double partial[MOST]) {
   int size = n > MOST * PIECE ? (n - 1) / MOST + 1 : PIECE, count = (n + size - 1) / size;
 #pragma omp parallel for schedule(static) if (n > FEM_VECTOR_LONG)
   for (int p = 0; p < count; p++)
     partial[p] = piece_of(p + 1 < count ? size : n - p * size, x + p * size, y + p * size);
+  return count;
+}
+
+static double sum_pieces(int n, PieceOf *piece_of, const double *x, const double *y) {
+  double partial[MOST], sum = 0;
+  int count = find_pieces(n, piece_of, x, y, partial);
   for (int p = 0; p < count; p++) sum += partial[p];
   return sum;
 }
@@ -94,9 +116,9 @@ double fem_vector_square(int n, const double *x, const double *w) {
 }
 
 double fem_vector_largest(int n, const double *x) {
-  double largest = 0;
-#pragma omp parallel for simd schedule(static) reduction(max : largest) if (n > FEM_VECTOR_LONG)
-  for (int i = 0; i < n; i++) largest = fabs(x[i]) > largest ? fabs(x[i]) : largest;
+  double partial[MOST], largest = 0;
+  int count = find_pieces(n, largest_piece, x, x, partial);
+  for (int p = 0; p < count; p++) largest = larger(largest, partial[p]);
   return largest;
 }
 

@@ -16,6 +16,8 @@ enum { BLOCK = 128, TILE = 256 };
 enum { ROWS = 512, COLUMNS = 16 };
 // Multiplications of a front that is worth being cut in a factorisation, and in a solution.
 static const double LARGE = 1e7, LONG = 1e5;
+// A solution by fewer numbers is over before another thread is awake.
+static const size_t FEW_VALUES = 500000;
 
 // A factorisation while it goes on.
 typedef struct Make {
@@ -409,9 +411,10 @@ static void sweep_root(FemFrontFactor *factor, int root) {
 static void solve(FemFrontFactor *factor, bool is_rough, const double *b, double *x) {
   const FemFrontTree *tree = factor->tree;
   factor->is_rough = is_rough;
+  const bool is_long_enough = tree->value_count > FEW_VALUES;
 #pragma omp parallel for schedule(static) if (tree->size > FEM_VECTOR_LONG)
   for (int i = 0; i < tree->size; i++) factor->x[i] = b[tree->unknown[i]];
-#pragma omp parallel
+#pragma omp parallel if (is_long_enough)
 #pragma omp single
   for (int f = 0; f < tree->front_count; f++)
     if (tree->fronts[f].parent < 0) {
