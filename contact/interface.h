@@ -10,7 +10,6 @@ typedef struct ContactInterface {
   double pressed;   // Σ |F_ij|: ∫ p dA, whatever its directions [N]
   double volume;    // Σ V_ij [m³]
   int active_count; // pairs with V > 0
-  double area;      // of contact [m²] (contact/pressure/imprint.h)
   double centre[3]; // of pressure [m]; NaN: nothing presses
 } ContactInterface;
 

@@ -13,7 +13,9 @@ Status contact_rest_create(ContactRest *rest, const ContactLayout *layout) {
   rest->forces = memory_zeroed(3 * (size_t)layout->def.vertex_count, sizeof(double));
   rest->covered = memory_zeroed((size_t)layout->def.tet_count, sizeof(double));
   rest->interfaces = memory_zeroed(interfaces, sizeof *rest->interfaces);
-  bool fits = rest->is_resting && rest->is_near && rest->forces && rest->covered && rest->interfaces;
+  rest->areas = memory_zeroed(interfaces, sizeof *rest->areas);
+  bool fits =
+      rest->is_resting && rest->is_near && rest->forces && rest->covered && rest->interfaces && rest->areas;
   return fits ? STATUS_OK : status_no_memory("contact at rest");
 }
 
@@ -23,12 +25,14 @@ void contact_rest_destroy(ContactRest *rest) {
   memory_free(rest->forces);
   memory_free(rest->covered);
   memory_free(rest->interfaces);
+  memory_free(rest->areas);
   *rest = (ContactRest){0};
 }
 
 void contact_rest_clear(ContactRest *rest, const ContactLayout *layout) {
   memset(rest->is_resting, 0, (size_t)layout->interface_count * sizeof *rest->is_resting);
   memset(rest->is_near, 0, (size_t)layout->interface_count * sizeof *rest->is_near);
+  memset(rest->areas, 0, (size_t)layout->interface_count * sizeof *rest->areas);
   memset(rest->forces, 0, 3 * (size_t)layout->def.vertex_count * sizeof(double));
   memset(rest->covered, 0, (size_t)layout->def.tet_count * sizeof(double));
   rest->resting_count = 0;

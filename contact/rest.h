@@ -18,6 +18,7 @@ typedef struct ContactRest {
   double *forces;                        // of them [N]                     (vertex_count, 3)
   double *covered;                       // of them, Σ W_i [m³]             (tet_count)
   ContactInterface *interfaces;          // of resting interfaces              (interface_count)
+  double *areas; // of contact of resting interfaces [m²]; the user's       (interface_count)
 } ContactRest;
 
 // Nothing rests.

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "contact/audit.h"
 #include "contact/footprint.h"
+#include "contact/pressure/area.h"
 #include "contact/pressure/star_sink.h"
 #include "contact/rest.h"
 #include "contact/search/gap.h"
@@ -327,6 +328,19 @@ void contact_system_gaps(ContactSystem *system, const ContactEvaluation *evaluat
                      evaluation->positions, gaps);
 }
 
+static void find_areas(const ContactSystem *system, const ContactEvaluation *evaluation, double *areas) {
+  for (int p = 0; p < evaluation->patches.patch_count; p++) {
+    const ContactPatch *patch = &evaluation->patches.patches[p];
+    areas[patch->interface] = contact_area_find(&system->layout, evaluation, patch);
+  }
+}
+
+void contact_system_areas(const ContactSystem *system, const ContactEvaluation *evaluation, double *areas) {
+  for (int f = 0; f < system->layout.interface_count; f++)
+    areas[f] = contact_system_is_resting(system, f) ? system->rest.areas[f] : 0;
+  find_areas(system, evaluation, areas);
+}
+
 int contact_system_origin(const ContactSystem *system, int tet) {
   return system->stars.is_needed ? system->stars.origin[tet] : tet;
 }
@@ -346,6 +360,7 @@ Status contact_system_hold(ContactSystem *system, double time, const double *pos
   TRY(evaluate(system, time, positions));
   contact_rest_keep(&system->rest, layout, &system->candidates.list, &system->evaluation.patches,
                     system->evaluation.interfaces, is_held);
+  find_areas(system, &system->evaluation, system->rest.areas);
   TRY(keep_traces(system));
   contact_candidates_leave_out(&system->candidates, layout, system->rest.is_resting);
   contact_near_forget(&system->near);

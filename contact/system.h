@@ -101,6 +101,9 @@ void contact_system_add_resting(const ContactSystem *system, double *force);
 Status contact_system_stiffness(ContactSystem *system, const ContactEvaluation *evaluation,
                                 const ContactStiffnessSink *sink);
 
+// The areas of contact (contact/pressure/area.h), those at rest included [m²].             (interface_count)
+void contact_system_areas(const ContactSystem *system, const ContactEvaluation *evaluation, double *areas);
+
 // The same of one interface, none at rest: its forces, its energy, its part of the stiffness.
 void contact_system_add_force_of(const ContactSystem *system, const ContactEvaluation *evaluation,
                                  int interface, double *force);

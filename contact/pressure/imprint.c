@@ -7,13 +7,12 @@
 
 void contact_imprint_find(const ContactFieldPair *fields, const ContactPatch *patch,
                           ContactInterface *interface) {
-  interface->area = interface->pressed = 0;
+  interface->pressed = 0;
   Vec3 moment = {0, 0, 0};
   for (int k = patch->pair_begin; k < patch->pair_end; k++) {
     const ContactFieldPair *field = &fields[k];
     double force = vec3_length(vec3_at(field->force));
     if (!(field->energy > 0)) continue;
-    interface->area += contact_field_area(field);
     moment = vec3_add(moment, vec3_scale(force, vec3_at(field->centroid)));
     interface->pressed += force;
   }

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/evaluation.h"
+#include "contact/pressure/area.h"
 #include "fem/model/limits.h"
 #include "fem/model/tolerance.h"
 
@@ -131,9 +132,14 @@ static Status find_rim(const ContactLayout *layout, const ContactEvaluation *eva
 // ½ F · depth of a patch, which is U where the law is linear.
 static double energy_of(const ContactLayout *layout, const ContactEvaluation *evaluation,
                         const ContactPatch *patch) {
-  const ContactInterface *interface = &evaluation->interfaces[patch->interface];
+  double sum = 0;
   if (!layout->interfaces[patch->interface].law) return patch->energy;
-  return interface->area > 0 ? 0.5 * interface->pressed * interface->volume / interface->area : 0;
+  for (int k = patch->pair_begin; k < patch->pair_end; k++) {
+    const ContactFieldPair *field = &evaluation->fields[k];
+    double area = contact_field_area(field), depth = area > 0 ? field->volume / area : 0;
+    sum += 0.5 * vec3_length(vec3_at(field->force)) * depth;
+  }
+  return sum;
 }
 
 // Whether P of the patch is the largest so far, or more energy is stored at about that; then `found` holds
@@ -145,7 +151,6 @@ static bool is_largest(const FemAccuracy *accuracy, const ContactInterface *inte
   found->pressed = interface->pressed;
   found->time = time;
   found->resultant = vec3_length(vec3_at(interface->force));
-  found->area = interface->area;
   memcpy(found->centre, interface->centre, sizeof found->centre);
   return true;
 }
@@ -192,6 +197,8 @@ Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, const Con
       find_way(accuracy, model, state->positions, &layout->interfaces[patch->interface], energy, elastic,
                found);
     if (found->pressed > GROWN * found->estimated) TRY(estimate(layout, evaluation, patch, found));
+    if (found->pressed > accuracy->pairs[patch->interface].pressed)
+      found->area = contact_area_find(layout, evaluation, patch);
     accuracy->places[accuracy->found_count++] = patch->interface;
   }
   return STATUS_OK;

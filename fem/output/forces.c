@@ -85,12 +85,13 @@ void fem_forces_destroy(FemForces *forces) {
   *forces = (FemForces){0};
 }
 
-static void take_interfaces(FemForces *forces, const ContactInterface *interfaces) {
+static void take_interfaces(FemForces *forces, const ContactEvaluation *evaluation) {
+  const ContactInterface *interfaces = evaluation->interfaces;
   for (int i = 0; i < forces->interface_count; i++) {
     vec3_store(forces->interfaces[i], vec3_at(interfaces[i].force));
     vec3_store(forces->centres[i], vec3_at(interfaces[i].centre));
-    forces->areas[i] = interfaces[i].area;
   }
+  contact_system_areas(contact_of(forces->system), evaluation, forces->areas);
 }
 
 static Status take_friction(FemForces *forces, const FemState *state) {
@@ -117,7 +118,7 @@ Status fem_forces_take(FemForces *forces, const FemState *state) {
   const ContactEvaluation *evaluation;
   TRY(fem_effect_contact_evaluate(system, state, &evaluation));
   if (!evaluation) return STATUS_OK;
-  take_interfaces(forces, evaluation->interfaces);
+  take_interfaces(forces, evaluation);
   if (forces->contact)
     memcpy(forces->contact, evaluation->given_forces, values_of(forces) * sizeof *forces->contact);
   TRY(take_friction(forces, state));
