@@ -175,6 +175,42 @@ START_TEST(what_slides_over_a_ball_does_not_pass_in_any_unit) {
 }
 END_TEST
 
+// A block that is pressed on another one and turned, in units of which the metre has `unit`: edges and
+// corners leave the other's faces, and touch them by rounding.
+static void turn_on_a_block(double unit) {
+  SceneRun run;
+  char texts[6][256];
+  const char *const bodies[2] = {"lower", "upper"};
+  for (int b = 0; b < 2; b++) {
+    snprintf(texts[b], sizeof texts[b],
+             "bodies.%s.material={law: corotational, young: %g, poisson: 0.3, density: %g}", bodies[b],
+             1e6 / unit, 1e3 / (unit * unit * unit));
+    snprintf(texts[2 + b], sizeof texts[2 + b], "bodies.%s.mesh.box.size=[%g, %g, %g]", bodies[b], 0.1 * unit,
+             0.1 * unit, 0.05 * unit);
+  }
+  snprintf(texts[4], sizeof texts[4], "bodies.upper.place={translate: [0, 0, %g]}", 0.05 * unit);
+  snprintf(texts[5], sizeof texts[5],
+           "bodies.upper.driven=[{group: z_max, formula: {z: '%g*min(4*t,1)'}, "
+           "turn: {axis: [0, 0, 1], centre: [%g, %g, 0], angle: '0.6*max(t-0.25,0)'}}]",
+           -2e-4 * unit, 0.05 * unit, 0.05 * unit);
+  run_without_passage(&run, "patch",
+                      (const char *const[]){texts[0], texts[1], texts[2], texts[3], texts[4], texts[5],
+                                            "bodies.lower.fixed=[{group: z_min}]", "bodies.upper.fixed=[]",
+                                            "bodies.upper.loads=[]", "contact={friction: 0.3}",
+                                            "output.frames=8", NULL});
+  ck_assert_int_eq((int)run.result.trouble.of[FEM_TROUBLE_ENCLOSED].steps, 0);
+  int corner = run.model.bodies[1].vertex_end - 1;
+  ck_assert_near(hypot(way_of(&run, corner, 0), way_of(&run, corner, 1)) / unit,
+                 2 * sin(0.225) * 0.05 * sqrt(2), 1e-6);
+  scene_close(&run);
+}
+
+START_TEST(what_is_turned_on_a_block_does_not_pass_in_any_unit) {
+  turn_on_a_block(1);
+  turn_on_a_block(1000);
+}
+END_TEST
+
 // A ball that turns over: the vertex that was its top comes to lie lower than its middle.
 START_TEST(what_rolls_does_not_pass) {
   SceneRun run;
@@ -229,6 +265,7 @@ int main(void) {
   tcase_add_test(cases, what_slides_does_not_pass);
   tcase_add_test(cases, what_rolls_does_not_pass);
   tcase_add_test(cases, what_slides_over_a_ball_does_not_pass_in_any_unit);
+  tcase_add_test(cases, what_is_turned_on_a_block_does_not_pass_in_any_unit);
   tcase_add_test(cases, what_sleeps_and_is_awakened_does_not_pass);
   tcase_add_test(cases, bodies_that_begin_inside_each_other_do_not_end_well);
   return suite_run("passage", cases, 60);
