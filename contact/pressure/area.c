@@ -32,18 +32,25 @@ static double share_below(const double gaps[3]) {
   return below == 1 ? corner : 1 - corner;
 }
 
-// Whether the shape's surface may pass through: its gap changes by no more than the way.
-static bool may_be_cut(const ContactShape *shape, const Triangle *triangle) {
+// Whether the gap at the middle says how much of a triangle lies in the shape: all shapes are convex, and so
+// are their gaps along any line. Then corners in the shape have all between them there, a gap of which the
+// middle is the mean of the corners is linear, and none is less than three times that of the middle without
+// twice the largest.
+static bool is_told(const ContactShape *shape, const Triangle *triangle, double area, double *inside) {
+  const double *gaps = triangle->gaps;
   Vec3 middle = vec3_scale(1.0 / 3, vec3_add(triangle->x[0], vec3_add(triangle->x[1], triangle->x[2])));
-  double farthest = 0;
-  for (int v = 0; v < 3; v++) farthest = fmax(farthest, vec3_length(vec3_sub(triangle->x[v], middle)));
-  return fabs(contact_shape_gap(shape, 0, middle)) < farthest;
+  double most = fmax(gaps[0], fmax(gaps[1], gaps[2])), gap = contact_shape_gap(shape, 0, middle);
+  *inside = area * share_below(gaps);
+  if (!(most > 0) || (gaps[0] + gaps[1] + gaps[2]) / 3 - gap <= CONTACT_ROUNDING * sqrt(area)) return true;
+  if (!(3 * gap - 2 * most > 0)) return false;
+  *inside = 0;
+  return true;
 }
 
 // `shape` stands. What is smaller than `least` is not quartered.
 static double area_in_shape(const ContactShape *shape, const Triangle *triangle, double least) {
-  if (!(area_of(triangle) > least) || !may_be_cut(shape, triangle))
-    return area_of(triangle) * share_below(triangle->gaps);
+  double area = area_of(triangle), inside;
+  if (is_told(shape, triangle, area, &inside) || !(area > least)) return inside;
   Triangle middle, corner;
   double sum = 0;
   for (int v = 0; v < 3; v++) {
