@@ -116,6 +116,7 @@ static Status write_apart(FemFrames *frames, const FemVtuFrame *frame) {
 Status fem_frames_write(FemFrames *frames, const FemVtuFrame *frame) {
   const bool is_apart = may_copy(frames, frame);
   TRY(fem_frames_wait(frames));
+  fem_obstacle_frames_place(&frames->obstacles, frame->time);
   Status status = is_apart ? write_apart(frames, frame) : write_here(frames, frame);
   frames->left_at_s = clock_wall_s();
   return status;

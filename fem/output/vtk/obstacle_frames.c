@@ -42,6 +42,10 @@ static Status write_surface(const FemObstacleSurface *surface, const char *direc
   return status;
 }
 
+void fem_obstacle_frames_place(FemObstacleFrames *frames, double time) {
+  if (frames->moving.vertex_count > 0) fem_obstacle_surface_place(&frames->moving, time);
+}
+
 Status fem_obstacle_frames_write(FemObstacleFrames *frames, const char *directory, int frame, double time) {
   if (frames->standing.vertex_count > 0 && !frames->has_standing) {
     TRY(write_surface(&frames->standing, directory, STANDING_FILE, NAN));
@@ -50,7 +54,6 @@ Status fem_obstacle_frames_write(FemObstacleFrames *frames, const char *director
   if (frames->moving.vertex_count == 0) return STATUS_OK;
   char name[NAME_SIZE];
   name_moving(frame, name);
-  fem_obstacle_surface_place(&frames->moving, time);
   return write_surface(&frames->moving, directory, name, time);
 }
 

@@ -17,7 +17,10 @@ void fem_obstacle_frames_destroy(FemObstacleFrames *frames); // a zeroed one, to
 
 // Whether there is anything to write.
 bool fem_obstacle_frames_any(const FemObstacleFrames *frames);
-// Writes what belongs to frame `frame` at that time [s]. Fails as fem_vtu_write.
+// Moves them to where the model has them at that time [s].
+void fem_obstacle_frames_place(FemObstacleFrames *frames, double time);
+// Writes what belongs to frame `frame`, of that time, where they were placed; reads no model. Fails as
+// fem_vtu_write.
 Status fem_obstacle_frames_write(FemObstacleFrames *frames, const char *directory, int frame, double time);
 // Adds its parts, from 1 on, to the list of frames.
 void fem_obstacle_frames_list(const FemObstacleFrames *frames, FileWriter *list, int frame, double time);
