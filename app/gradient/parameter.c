@@ -28,9 +28,9 @@ static const Key body_keys[] = {
     {"material.ogden.shares[#]", FEM_PARAMETER_OGDEN_SHARE, -1, 0, -1},
     {"material.fibre.modulus", FEM_PARAMETER_FIBRE, -1, -1, -1},
     {"velocity[#]", FEM_PARAMETER_START, -1, -1, 0},
-    {"material.damping", FEM_PARAMETER_MOTION_ALONE, -1, -1, -1},
-    {"material.viscosity", FEM_PARAMETER_MOTION_ALONE, -1, -1, -1},
-    {"material.bulk_viscosity", FEM_PARAMETER_MOTION_ALONE, -1, -1, -1},
+    {"material.damping", FEM_PARAMETER_DAMPING, -1, -1, -1},
+    {"material.viscosity", FEM_PARAMETER_VISCOSITY, -1, -1, -1},
+    {"material.bulk_viscosity", FEM_PARAMETER_BULK_VISCOSITY, -1, -1, -1},
     {"place.translate[#]", FEM_PARAMETER_PLACE, -1, -1, 0},
     {"loads[#].force[#]", FEM_PARAMETER_LOAD, 0, -1, 1},
     {"loads[#].body_force[#]", FEM_PARAMETER_LOAD, 0, -1, 1},
@@ -62,14 +62,14 @@ static const Key scene_keys[] = {
     {"contact.pairs[#].stiffness", FEM_PARAMETER_PAIR_STIFFNESS, 0, -1, -1},
     {"contact.friction", FEM_PARAMETER_FRICTION, -1, -1, -1},
     {"contact.pairs[#].friction", FEM_PARAMETER_PAIR_FRICTION, 0, -1, -1},
-    {"contact.viscosity", FEM_PARAMETER_MOTION_ALONE, -1, -1, -1},
+    {"contact.viscosity", FEM_PARAMETER_CONTACT_VISCOSITY, -1, -1, -1},
     {"effects.gravity[#]", FEM_PARAMETER_GRAVITY, -1, -1, 0},
-    {"effects.damping", FEM_PARAMETER_MOTION_ALONE, -1, -1, -1},
+    {"effects.damping", FEM_PARAMETER_DAMPING, -1, -1, -1},
 };
 
 const char app_gradient_keys[] =
     "bodies.NAME.material.{young, poisson, density, mooney, ogden.exponents[K], ogden.shares[K], "
-    "fibre.modulus}, bodies.NAME.materials[N].{…} the same; "
+    "fibre.modulus, damping, viscosity, bulk_viscosity}, bodies.NAME.materials[N].{…} the same; "
     "bodies.NAME.loads[N].{force[K], body_force[K], traction[K], pressure}; "
     "bodies.NAME.driven[N].{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}; "
     "bodies.NAME.{place.translate[K], velocity[K]}; "
@@ -77,7 +77,7 @@ const char app_gradient_keys[] =
     "place.translate[K]}; "
     "obstacles.NAME.motion.{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}; "
     "contact.stiffness, contact.friction, contact.pairs[N].{stiffness, friction}; "
-    "effects.gravity[K]";
+    "effects.gravity[K], effects.damping";
 
 static bool matches(const char *key, const char *pattern, int numbers[MAX_NUMBERS]) {
   int count = 0;

@@ -20,19 +20,21 @@ Status fem_change_create(FemChange *change, const FemTangent *tangent) {
   *change = (FemChange){.party = -1, .placed = -1};
   change->force = memory_zeroed(values, sizeof(double));
   change->motion = memory_zeroed(values, sizeof(double));
+  change->speed = memory_zeroed(values, sizeof(double));
   change->product = memory_zeroed(values, sizeof(double));
   change->contact = memory_zeroed(values, sizeof(double));
   change->rates = memory_zeroed((size_t)tangent->interface_count, sizeof(double));
   change->slips = memory_zeroed((size_t)tangent->interface_count, sizeof(double));
   change->masses = memory_zeroed(values / 3, sizeof(double));
-  bool fits = change->force && change->motion && change->product && change->contact && change->rates &&
-              change->slips && change->masses;
+  bool fits = change->force && change->motion && change->speed && change->product && change->contact &&
+              change->rates && change->slips && change->masses;
   return fits ? STATUS_OK : status_no_memory("what a parameter changes");
 }
 
 void fem_change_destroy(FemChange *change) {
   memory_free(change->force);
   memory_free(change->motion);
+  memory_free(change->speed);
   memory_free(change->rates);
   memory_free(change->slips);
   memory_free(change->masses);
@@ -45,6 +47,7 @@ static void clear(FemChange *change, const FemTangent *tangent) {
   size_t bytes = values_of(tangent) * sizeof(double);
   memset(change->force, 0, bytes);
   memset(change->motion, 0, bytes);
+  memset(change->speed, 0, bytes);
   memset(change->rates, 0, (size_t)tangent->interface_count * sizeof(double));
   memset(change->slips, 0, (size_t)tangent->interface_count * sizeof(double));
   change->party = change->placed = -1;
@@ -121,11 +124,12 @@ static double *value_in(FemConstraintDef *motion, const FemParameter *parameter,
 typedef struct Motion {
   FemConstraintDef def;
   double *value, middle, step, time;
+  bool is_over; // it stands since `until`
 } Motion;
 
 static Status copy_motion(Motion *motion, const FemConstraintDef *def, const FemParameter *parameter,
                           double time, double length) {
-  *motion = (Motion){.def = *def, .time = fmin(time, def->until)};
+  *motion = (Motion){.def = *def, .time = fmin(time, def->until), .is_over = time >= def->until};
   motion->def.table = memory_copy(def->table, 4 * (size_t)def->table_count, sizeof(double));
   if (!motion->def.table) return status_no_memory("a motion");
   motion->value = value_in(&motion->def, parameter, motion->time, length, &motion->step);
@@ -133,16 +137,19 @@ static Status copy_motion(Motion *motion, const FemConstraintDef *def, const Fem
   return STATUS_OK;
 }
 
-// ∂x/∂p of what rests at a point.
-static Vec3 move_point(Motion *motion, const double rest[3]) {
+// ∂x/∂p and ∂v/∂p of what rests at a point.
+static Vec3 move_point(Motion *motion, const double rest[3], Vec3 *speed) {
   Vec3 sum = {0, 0, 0};
+  *speed = (Vec3){0, 0, 0};
   for (int k = 0; k < FEM_DIFFERENCE_POINTS; k++) {
     double position[3], velocity[3];
     *motion->value = motion->middle + fem_difference[k].place * motion->step;
     fem_drive_point(&motion->def, motion->time, rest, position, velocity);
     sum = vec3_add(
         sum, vec3_scale(fem_difference[k].weight / motion->step, vec3_sub(vec3_at(position), vec3_at(rest))));
+    *speed = vec3_add(*speed, vec3_scale(fem_difference[k].weight / motion->step, vec3_at(velocity)));
   }
+  if (motion->is_over) *speed = (Vec3){0, 0, 0};
   return sum;
 }
 
@@ -151,10 +158,13 @@ static void move_vertices(FemChange *change, const FemModel *model, const FemCon
   for (int d = 0; d < model->driver_count; d++) {
     const FemModelDriver *driver = &model->drivers[d];
     for (int i = 0; i < driver->dof_count && driver->def == def; i++) {
-      double moved[3];
+      double moved[3], faster[3];
       int dof = driver->dofs[i];
-      vec3_store(moved, move_point(motion, model->rest + (dof - dof % 3)));
+      Vec3 speed;
+      vec3_store(moved, move_point(motion, model->rest + (dof - dof % 3), &speed));
+      vec3_store(faster, speed);
       change->motion[dof] = moved[dof % 3];
+      change->speed[dof] = faster[dof % 3];
     }
   }
 }
@@ -164,8 +174,9 @@ static void move_vertices(FemChange *change, const FemModel *model, const FemCon
 static void move_obstacle(FemChange *change, const FemConstraintDef *def, const FemParameter *parameter,
                           Motion *motion) {
   static const double origin[3] = {0, 0, 0};
+  Vec3 speed;
   if (parameter->kind != FEM_PARAMETER_SPIN) {
-    vec3_store(change->shift, move_point(motion, origin));
+    vec3_store(change->shift, move_point(motion, origin, &speed));
     return;
   }
   double centre[3], velocity[3];
@@ -285,6 +296,16 @@ static Status change_material(FemChange *change, FemVaried *varied, const FemTan
   return rate_choice(change, varied, tangent, parameter->part, constant);
 }
 
+// By the damping of all materials that have none of their own.
+static Status damp(FemChange *change, FemVaried *varied, const FemTangent *tangent) {
+  const FemModel *model = tangent->system->model;
+  for (int p = 0; p < model->part_count; p++)
+    if (model->parts[p].material.damping < 0)
+      TRY(fem_varied_derive(varied, p, FEM_PARAMETER_DAMPING, 0, tangent->state, change->force,
+                            &change->elastic));
+  return STATUS_OK;
+}
+
 // ---- What follows for contact.
 
 bool fem_change_moves(const FemChange *change, const FemTangent *tangent, int interface) {
@@ -322,6 +343,7 @@ Status fem_change_add_contact(FemChange *change, const FemTangent *tangent, int 
 static Status find(FemChange *change, FemVaried *varied, const FemTangent *tangent,
                    const FemParameter *parameter, bool follows) {
   double by[3] = {0, 0, 0};
+  if (parameter->kind == FEM_PARAMETER_DAMPING && parameter->part < 0) return damp(change, varied, tangent);
   if (fem_parameter_is_of_material(parameter))
     return change_material(change, varied, tangent, parameter, follows);
   if (fem_parameter_is_of_motion(parameter)) return move(change, tangent, parameter);

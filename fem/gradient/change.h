@@ -14,6 +14,7 @@
 typedef struct FemChange {
   double *force;  // on all vertices, contact included                     (vertex_count, 3)
   double *motion; // of prescribed coordinates, else 0                     (vertex_count, 3)
+  double *speed;  // of their velocities                                   (vertex_count, 3)
   double *rates;  // ∂ ln κ/∂p of each interface                           (interface_count)
   double *slips;  // ∂μ/∂p of each interface                               (interface_count)
   double *masses; // ∂m/∂p of a density, else not set                      (vertex_count)

@@ -14,6 +14,9 @@ bool fem_parameter_is_of_material(const FemParameter *parameter) {
   case FEM_PARAMETER_OGDEN_EXPONENT:
   case FEM_PARAMETER_OGDEN_SHARE:
   case FEM_PARAMETER_FIBRE:
+  case FEM_PARAMETER_DAMPING:
+  case FEM_PARAMETER_VISCOSITY:
+  case FEM_PARAMETER_BULK_VISCOSITY:
     return true;
   default:
     return false;
@@ -67,6 +70,11 @@ int fem_parameter_friction_pair(const FemModel *model, int a, int b) {
   for (int i = 0; i < contact->pair_count; i++)
     if (contact->pairs[i].friction.coefficient >= 0 && is_of(model, &contact->pairs[i], a, b)) found = i;
   return found;
+}
+
+static bool is_damping(const FemParameter *parameter) {
+  return parameter->kind == FEM_PARAMETER_DAMPING || parameter->kind == FEM_PARAMETER_VISCOSITY ||
+         parameter->kind == FEM_PARAMETER_BULK_VISCOSITY;
 }
 
 // ---- What has a derivative.
@@ -147,6 +155,15 @@ static bool is_at_largest_ratio(const FemModelBody *body, const FemMaterial *mat
   return isfinite(most) && fabs(lame.lambda - most) <= NEAR * most;
 }
 
+// At 0 there is no damping effect that could be varied.
+static Status check_damping(const FemModel *model, const FemParameter *parameter) {
+  bool is_of_all = parameter->part < 0;
+  if (model->scene->is_static || fem_parameter_value(model, parameter) > 0) return STATUS_OK;
+  if (is_of_all) return status_fail(STATUS_INPUT, "effects.damping is not given or 0: give it a value");
+  return status_fail(STATUS_INPUT, "body '%s' has no such constant of its own, or it is 0: give it a value",
+                     model->scene->bodies[parameter->body].name);
+}
+
 static Status check_material(const FemModel *model, const FemParameter *parameter) {
   const FemModelBody *body = &model->bodies[parameter->body];
   const FemMaterial *material = &model->parts[parameter->part].material;
@@ -164,6 +181,7 @@ static Status check_material(const FemModel *model, const FemParameter *paramete
 }
 
 Status fem_parameter_check(const FemModel *model, const FemParameter *parameter) {
+  if (is_damping(parameter)) return check_damping(model, parameter);
   if (fem_parameter_is_of_material(parameter)) return check_material(model, parameter);
   if (fem_parameter_is_of_motion(parameter)) return check_motion(model, parameter);
   switch (parameter->kind) {
@@ -176,9 +194,9 @@ Status fem_parameter_check(const FemModel *model, const FemParameter *parameter)
   case FEM_PARAMETER_FRICTION:
   case FEM_PARAMETER_PAIR_FRICTION:
     return check_friction(model, parameter);
-  case FEM_PARAMETER_MOTION_ALONE:
+  case FEM_PARAMETER_CONTACT_VISCOSITY:
     if (!model->scene->is_static)
-      return status_fail(STATUS_INPUT, "there is no derivative by damping or viscosity in a motion");
+      return status_fail(STATUS_INPUT, "there is no derivative by the viscosity of contact in a motion");
     break;
   default:
     break;
@@ -207,8 +225,18 @@ static const char *idle_density(const FemModel *model) {
   return is_heavy ? NULL : "a density acts by gravity alone, which the scene does not have";
 }
 
+static const char *idle_damping(const FemModel *model, const FemParameter *parameter) {
+  if (model->scene->is_static) return "it acts in motions alone, and the scene is static";
+  if (parameter->part >= 0) return NULL;
+  for (int p = 0; p < model->part_count; p++)
+    if (model->parts[p].material.damping < 0) return NULL;
+  return "all materials have a damping of their own";
+}
+
 const char *fem_parameter_idle(const FemModel *model, const FemParameter *parameter) {
   switch (parameter->kind) {
+  case FEM_PARAMETER_DAMPING:
+    return idle_damping(model, parameter);
   case FEM_PARAMETER_DENSITY:
     return idle_density(model);
   case FEM_PARAMETER_CONTACT_STIFFNESS:
@@ -222,7 +250,9 @@ const char *fem_parameter_idle(const FemModel *model, const FemParameter *parame
   case FEM_PARAMETER_OGDEN_SHARE:
     return idle_of_law(model, parameter, FEM_MATERIAL_OGDEN);
   case FEM_PARAMETER_START:
-  case FEM_PARAMETER_MOTION_ALONE:
+  case FEM_PARAMETER_CONTACT_VISCOSITY:
+  case FEM_PARAMETER_VISCOSITY:
+  case FEM_PARAMETER_BULK_VISCOSITY:
     return model->scene->is_static ? "it acts in motions alone, and the scene is static" : NULL;
   default:
     return NULL;
@@ -257,6 +287,10 @@ static double value_of_material(const FemMaterial *material, const FemParameter 
     return material->shares[parameter->row];
   case FEM_PARAMETER_FIBRE:
     return material->fibre_stiffness;
+  case FEM_PARAMETER_VISCOSITY:
+    return material->viscosity;
+  case FEM_PARAMETER_BULK_VISCOSITY:
+    return material->bulk_viscosity;
   default:
     return material->density;
   }
@@ -297,8 +331,11 @@ double fem_parameter_value(const FemModel *model, const FemParameter *parameter)
     return contact_of(model)->pairs[parameter->item].friction.coefficient;
   case FEM_PARAMETER_START:
     return model->scene->bodies[parameter->body].velocity[parameter->component];
-  case FEM_PARAMETER_MOTION_ALONE:
-    return NAN;
+  case FEM_PARAMETER_CONTACT_VISCOSITY:
+    return contact_of(model)->viscosity;
+  case FEM_PARAMETER_DAMPING:
+    return parameter->part < 0 ? model->scene->stiffness_damping
+                               : fmax(0, model->parts[parameter->part].material.damping);
   default:
     return value_of_material(&model->parts[parameter->part].material, parameter);
   }
@@ -336,6 +373,13 @@ const char *fem_parameter_unit(const FemModel *model, const FemParameter *parame
     return "m";
   case FEM_PARAMETER_FREQUENCY:
     return "Hz";
+  case FEM_PARAMETER_DAMPING:
+    return "s";
+  case FEM_PARAMETER_VISCOSITY:
+  case FEM_PARAMETER_BULK_VISCOSITY:
+    return "Pa s";
+  case FEM_PARAMETER_CONTACT_VISCOSITY:
+    return "Pa s/m²";
   case FEM_PARAMETER_SPIN:
     return "rad/s";
   case FEM_PARAMETER_CONTACT_STIFFNESS:

@@ -12,6 +12,9 @@ typedef enum FemParameterKind {
   FEM_PARAMETER_OGDEN_EXPONENT,    // of ogden, α of a term (`row`)
   FEM_PARAMETER_OGDEN_SHARE,       // of ogden, the share of a term (`row`) before it is normalised
   FEM_PARAMETER_FIBRE,             // modulus of a part's fibres [Pa]
+  FEM_PARAMETER_DAMPING,           // β of a part, or (part −1) of all that have none of their own [s]
+  FEM_PARAMETER_VISCOSITY,         // of a part [Pa s]
+  FEM_PARAMETER_BULK_VISCOSITY,    // of a part [Pa s]
   FEM_PARAMETER_DENSITY,           // of a part [kg/m³]
   FEM_PARAMETER_GRAVITY,           // a component [m/s²]
   FEM_PARAMETER_LOAD,              // loads[item] of a body: a component of its vector, or its pressure
@@ -26,7 +29,7 @@ typedef enum FemParameterKind {
   FEM_PARAMETER_FRICTION,          // μ between any two that no pair says otherwise
   FEM_PARAMETER_PAIR_FRICTION,     // μ of contact.pairs[item]
   FEM_PARAMETER_START,             // a component of the velocity that a body starts with [m/s]
-  FEM_PARAMETER_MOTION_ALONE,      // what acts in motions alone: damping, viscosities
+  FEM_PARAMETER_CONTACT_VISCOSITY, // acts in motions alone, of which it has no derivative
 } FemParameterKind;
 
 typedef struct FemParameter {
@@ -38,14 +41,14 @@ typedef struct FemParameter {
   int row, component;
 } FemParameter;
 
-bool fem_parameter_is_of_material(const FemParameter *parameter); // acts by the elastic forces of its part
+bool fem_parameter_is_of_material(const FemParameter *parameter); // acts by forces within its part
 bool fem_parameter_is_of_motion(const FemParameter *parameter);   // of a prescribed motion
 
 // STATUS_INPUT: the scene does not give it, or no derivative is known; the message says why.
 Status fem_parameter_check(const FemModel *model, const FemParameter *parameter);
 // Why a parameter that was checked changes nothing, so that its derivatives are 0; NULL: it may.
 const char *fem_parameter_idle(const FemModel *model, const FemParameter *parameter);
-// As the scene gives it; NaN: of FEM_PARAMETER_MOTION_ALONE.
+// As the scene gives it.
 double fem_parameter_value(const FemModel *model, const FemParameter *parameter);
 const char *fem_parameter_unit(const FemModel *model, const FemParameter *parameter);
 

@@ -18,6 +18,7 @@ typedef struct Behind {
   double (*moves)[3];     // by what side 1 of each interface moves            (interface_count)
   size_t capacity;
   FemFriction friction; // of the step
+  FemDamping damping;   // of the step
 } Behind;
 
 typedef struct Sweep {
@@ -27,6 +28,7 @@ typedef struct Sweep {
   FemVaried varied;
   FemKrylov krylov;
   FemFriction scratch;
+  FemDamping damping;              // scratch
   Behind *behind;                  // of each goal
   double *lambda, *weight, *slope; // scratch, and ∂g/∂x of each goal  (3 V), (3 V), (goal_count, 3 V)
   double *right, *product;         // scratch                          (n)
@@ -42,6 +44,10 @@ static bool has_friction(const Sweep *sweep) {
   return sweep->replay.stick != NULL;
 }
 
+static bool is_damped(const Sweep *sweep) {
+  return sweep->damping.effect != NULL;
+}
+
 static void destroy_behind(Behind *behind) {
   memory_free(behind->beta);
   memory_free(behind->alpha);
@@ -49,11 +55,13 @@ static void destroy_behind(Behind *behind) {
   memory_free(behind->histories);
   memory_free(behind->moves);
   fem_friction_destroy(&behind->friction);
+  fem_damping_destroy(&behind->damping);
 }
 
 static void destroy(Sweep *sweep) {
   for (int g = 0; sweep->behind && g < sweep->def->goal_count; g++) destroy_behind(&sweep->behind[g]);
   fem_friction_destroy(&sweep->scratch);
+  fem_damping_destroy(&sweep->damping);
   fem_krylov_destroy(&sweep->krylov);
   fem_varied_destroy(&sweep->varied);
   fem_replay_destroy(&sweep->replay);
@@ -67,6 +75,7 @@ static Status create_behind(const Sweep *sweep, Behind *behind) {
   behind->beta = memory_zeroed(3 * n, sizeof(double));
   behind->alpha = memory_zeroed(3 * n, sizeof(double));
   if (!behind->beta || !behind->alpha) return status_no_memory("the adjoint of a run");
+  TRY(fem_damping_create(&behind->damping, &sweep->replay.system));
   if (!has_friction(sweep)) return STATUS_OK;
   TRY(fem_friction_create(&behind->friction, &sweep->replay.system));
   behind->places = memory_zeroed(values_of(sweep), sizeof(double));
@@ -99,8 +108,9 @@ static Status create(Sweep *sweep, const FemModel *model, const FemGradientDef *
       !sweep->product || !sweep->factors)
     return status_no_memory("the adjoint of a run");
   for (size_t g = 0; g < goals; g++) TRY(create_behind(sweep, &sweep->behind[g]));
-  if (!has_friction(sweep)) return STATUS_OK;
-  TRY(fem_friction_create(&sweep->scratch, &sweep->replay.system));
+  if (sweep->replay.is_exact) return STATUS_OK;
+  TRY(fem_damping_create(&sweep->damping, &sweep->replay.system));
+  if (has_friction(sweep)) TRY(fem_friction_create(&sweep->scratch, &sweep->replay.system));
   sweep->krylov = (FemKrylov){.self = sweep, .multiply = multiply, .precondition = precondition};
   return fem_krylov_create(&sweep->krylov, (int)n);
 }
@@ -124,7 +134,7 @@ static void spread(Sweep *sweep, const double *x, double sign) {
   for (int i = 0; i < numbering->count; i++) sweep->lambda[numbering->dof_of_unknown[i]] = sign * x[i];
 }
 
-// y = (−∂f/∂u + c² M)ᵀ x, exact.
+// y = (−∂f/∂u − c ∂f/∂v + c² M)ᵀ x, exact.
 static Status multiply(void *self, const double *x, double *y) {
   Sweep *sweep = self;
   const FemNumbering *numbering = &sweep->replay.system.numbering;
@@ -135,17 +145,21 @@ static Status multiply(void *self, const double *x, double *y) {
     TRY(fem_friction_begin(&sweep->scratch, &sweep->replay.state));
     TRY(fem_friction_pull(&sweep->scratch, CONTACT_ALL_INTERFACES, sweep->lambda, 1));
   }
+  fem_damping_begin(&sweep->damping, &sweep->replay.state);
+  TRY(fem_damping_pull(&sweep->damping, sweep->lambda, 1));
   for (int i = 0; i < numbering->count; i++) {
     int dof = numbering->dof_of_unknown[i];
     y[i] = sweep->weight[dof] + c * c * fem_replay_mass(&sweep->replay, i) * x[i];
     if (has_friction(sweep)) y[i] -= sweep->scratch.now[dof];
+    if (is_damped(sweep)) y[i] -= sweep->damping.now[dof] + c * sweep->damping.rate[dof];
   }
   return STATUS_OK;
 }
 
 static Status solve(Sweep *sweep, double *beta, double *residual) {
   double whole = 0, left = 0;
-  if (has_friction(sweep)) return fem_krylov_solve(&sweep->krylov, sweep->right, RESIDUAL, beta, residual);
+  if (!sweep->replay.is_exact)
+    return fem_krylov_solve(&sweep->krylov, sweep->right, RESIDUAL, beta, residual);
   TRY(fem_equilibrium_solve(&sweep->replay.equilibrium, sweep->right, beta));
   fem_matrix_multiply(&sweep->replay.system.matrix, beta, sweep->product);
   for (int i = 0; i < sweep->replay.n; i++) {
@@ -160,11 +174,25 @@ static bool is_last(const Sweep *sweep) {
   return sweep->step == sweep->replay.steps->count - 1;
 }
 
-// ∂g/∂x of a goal at the step, its own only where it is found: at the last one.
+// ∂g/∂x of a goal at the step, at fixed velocities; its own only where it is found: at the last one.
 static double slope_at(const Sweep *sweep, int g, size_t dof) {
   const Behind *behind = &sweep->behind[g];
   double slope = is_last(sweep) ? sweep->slope[values_of(sweep) * (size_t)g + dof] : 0;
+  if (is_damped(sweep)) slope += behind->damping.now[dof];
   return has_friction(sweep) ? slope + behind->places[dof] + behind->friction.now[dof] : slope;
+}
+
+// The same by velocities.
+static double rate_at(const Sweep *sweep, int g, size_t dof) {
+  return is_damped(sweep) ? sweep->behind[g].damping.rate[dof] : 0;
+}
+
+// What friction and damping have by λ = −β.
+static Status pull_step(Sweep *sweep, Behind *behind, const double *beta) {
+  spread(sweep, beta, -1);
+  TRY(fem_damping_pull(&behind->damping, sweep->lambda, 1));
+  if (!has_friction(sweep)) return STATUS_OK;
+  return fem_friction_pull(&behind->friction, CONTACT_ALL_INTERFACES, sweep->lambda, 1);
 }
 
 static Status solve_step(Sweep *sweep, int g, double *largest) {
@@ -172,19 +200,20 @@ static Status solve_step(Sweep *sweep, int g, double *largest) {
   double c = fem_replay_formula(&sweep->replay, k).c, residual;
   Behind *behind = &sweep->behind[g];
   double *beta = of_step(sweep, behind->beta, k), *alpha = of_step(sweep, behind->alpha, k);
+  const int *dofs = sweep->replay.system.numbering.dof_of_unknown;
   for (int i = 0; i < sweep->replay.n; i++) {
     double s = fem_replay_mass(&sweep->replay, i) * carried(sweep, behind->beta, k, i);
-    sweep->right[i] = -c * s - carried(sweep, behind->alpha, k, i) -
-                      slope_at(sweep, g, (size_t)sweep->replay.system.numbering.dof_of_unknown[i]);
+    sweep->right[i] = -c * (s + rate_at(sweep, g, (size_t)dofs[i])) - carried(sweep, behind->alpha, k, i) -
+                      slope_at(sweep, g, (size_t)dofs[i]);
     alpha[i] = s;
   }
   TRY(solve(sweep, beta, &residual));
   TRY(fem_gradient_judge(residual, sweep->replay.steps->times[k]));
   *largest = fmax(*largest, residual);
-  for (int i = 0; i < sweep->replay.n; i++) alpha[i] += c * fem_replay_mass(&sweep->replay, i) * beta[i];
-  if (!has_friction(sweep)) return STATUS_OK;
-  spread(sweep, beta, -1);
-  return fem_friction_pull(&behind->friction, CONTACT_ALL_INTERFACES, sweep->lambda, 1);
+  TRY(pull_step(sweep, behind, beta));
+  for (int i = 0; i < sweep->replay.n; i++)
+    alpha[i] += c * fem_replay_mass(&sweep->replay, i) * beta[i] + rate_at(sweep, g, (size_t)dofs[i]);
+  return STATUS_OK;
 }
 
 // ---- What a step gives to the derivatives.
@@ -232,7 +261,8 @@ static Status add_step(Sweep *sweep, FemChange *change, int p, FemGradient *grad
     TRY(fem_tangent_multiply(&sweep->tangent, sweep->lambda, sweep->weight));
     for (size_t i = 0; i < values_of(sweep); i++)
       sum += sweep->lambda[i] * change->force[i] +
-             (slope_at(sweep, g, i) - sweep->weight[i]) * change->motion[i];
+             (slope_at(sweep, g, i) - sweep->weight[i]) * change->motion[i] +
+             rate_at(sweep, g, i) * change->speed[i];
     gradient->derivatives[g * def->parameter_count + p] += sum + change_friction(sweep, change, behind);
   }
   return STATUS_OK;
@@ -268,11 +298,13 @@ static Status evaluate_goals(Sweep *sweep, FemGradient *gradient) {
   double *factors = sweep->factors;
   for (int g = 0; g < sweep->def->goal_count; g++) {
     sweep->tangent.friction = has_friction(sweep) ? &sweep->behind[g].friction : NULL;
+    sweep->tangent.damping = &sweep->behind[g].damping;
     TRY(fem_goal_evaluate(&sweep->def->goals[g], &sweep->tangent, &gradient->values[g],
                           sweep->slope + values_of(sweep) * (size_t)g, factors));
     factors += sweep->def->goals[g].term_count;
   }
   sweep->tangent.friction = NULL;
+  sweep->tangent.damping = NULL;
   return STATUS_OK;
 }
 
@@ -289,6 +321,8 @@ static Status begin_friction(Sweep *sweep) {
 }
 
 static Status go_back_with(Sweep *sweep, FemGradient *gradient) {
+  for (int g = 0; g < sweep->def->goal_count; g++)
+    fem_damping_begin(&sweep->behind[g].damping, &sweep->replay.state);
   TRY(begin_friction(sweep));
   if (is_last(sweep)) TRY(evaluate_goals(sweep, gradient));
   for (int g = 0; g < sweep->def->goal_count && sweep->step > 0; g++)
@@ -344,16 +378,8 @@ static Status replay_and_return(Sweep *sweep, FemGradient *gradient) {
 
 // ---- What has a derivative.
 
-static Status check_damping(const FemModel *model) {
+static Status check_viscosity(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
-  for (int p = 0; p < model->part_count; p++) {
-    const FemModelPart *part = &model->parts[p];
-    if (part->damping > 0 || part->material.viscosity > 0 || part->material.bulk_viscosity > 0)
-      return status_fail(STATUS_INPUT,
-                         "body '%s' is damped: the matrix lacks what damping changes by positions, so that a "
-                         "motion has no exact gradient",
-                         model->bodies[part->body].name);
-  }
   if (scene->contact.is_on && scene->contact.viscosity > 0)
     return status_fail(STATUS_INPUT, "contact.viscosity: its matrix is not exact by positions");
   if (scene->contact.is_on && scene->contact.rest_is_on)
@@ -369,7 +395,7 @@ static Status check_released(const FemModel *model) {
 }
 
 static Status check_motion(const FemModel *model, const FemGradientDef *def) {
-  TRY(check_damping(model));
+  TRY(check_viscosity(model));
   TRY(check_released(model));
   for (int p = 0; p < def->parameter_count; p++) {
     const FemParameter *parameter = &def->parameters[p];

@@ -45,8 +45,8 @@ Status fem_quantity_check(const FemModel *model, const FemQuantity *quantity);
 const char *fem_quantity_unit(const FemQuantity *quantity);
 
 // q at the state, and q's derivative by all positions, prescribed ones included, times `weight` added to
-// slope (vertex_count, 3; NULL: not wanted); what friction has in it to tangent->friction. The energy of
-// contact is without that of friction's springs.
+// slope (vertex_count, 3; NULL: not wanted); what friction has in it to tangent->friction, damping to
+// tangent->damping. The energy of contact is without that of friction's springs.
 Status fem_quantity_evaluate(const FemQuantity *quantity, const FemTangent *tangent, double weight,
                              double *value, double *slope);
 // q's derivative by a parameter at fixed positions.

@@ -78,7 +78,7 @@ static Status precondition(void *self, const double *x, double *y) {
   return fem_equilibrium_solve(&((FemReplay *)self)->equilibrium, x, y);
 }
 
-static Status create_friction(FemReplay *replay) {
+static Status create_slips(FemReplay *replay) {
   FemSystem *system = &replay->system;
   replay->stick = fem_system_effect(system, &fem_effect_stick);
   if (!replay->stick) return STATUS_OK;
@@ -86,9 +86,16 @@ static Status create_friction(FemReplay *replay) {
   const ContactLayout *layout = contact_system_layout(contact);
   size_t marks = (size_t)layout->interface_count * (size_t)layout->def.vertex_count;
   replay->slips = memory_zeroed(marks, 1);
-  replay->ahead = memory_zeroed((size_t)replay->n, sizeof(double));
-  replay->aside = memory_zeroed((size_t)replay->n, sizeof(double));
-  if (!replay->slips || !replay->ahead || !replay->aside) return status_no_memory("the replay of a run");
+  return replay->slips ? STATUS_OK : status_no_memory("the replay of a run");
+}
+
+static Status create_krylov(FemReplay *replay) {
+  replay->is_exact = !replay->stick && !fem_system_effect(&replay->system, &fem_effect_damping);
+  if (replay->is_exact) return STATUS_OK;
+  double **arrays[] = {&replay->ahead, &replay->aside, &replay->rate};
+  bool fits = true;
+  for (int i = 0; i < 3; i++) fits = (*arrays[i] = memory_zeroed((size_t)replay->n, sizeof(double))) && fits;
+  if (!fits) return status_no_memory("the replay of a run");
   replay->krylov = (FemKrylov){.self = replay, .multiply = multiply, .precondition = precondition};
   return fem_krylov_create(&replay->krylov, replay->n);
 }
@@ -110,7 +117,8 @@ Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemRepl
                        steps->unknown_count, replay->n);
   TRY(fem_system_create_state(&replay->system, &replay->before));
   TRY(fem_system_create_state(&replay->system, &replay->state));
-  TRY(create_friction(replay));
+  TRY(create_slips(replay));
+  TRY(create_krylov(replay));
   return fem_equilibrium_create(&replay->equilibrium, &replay->system, &replay->state, &fem_solver_cholmod);
 }
 
@@ -123,8 +131,8 @@ void fem_replay_destroy(FemReplay *replay) {
   fem_state_destroy(&replay->before);
   fem_state_destroy(&replay->state);
   fem_system_destroy(&replay->system);
-  void *arrays[] = {replay->u,     replay->v,     replay->force,     replay->step,
-                    replay->ahead, replay->aside, replay->histories, replay->slips};
+  void *arrays[] = {replay->u,     replay->v,         replay->force, replay->step, replay->ahead,
+                    replay->aside, replay->histories, replay->slips, replay->rate};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
   *replay = (FemReplay){0};
 }
@@ -132,11 +140,11 @@ void fem_replay_destroy(FemReplay *replay) {
 // ---- A step.
 
 // Forces at u, where lists follow if the way was long.
-static Status find_forces(FemReplay *replay, double time, const double *u, double *force) {
-  Status status = fem_equilibrium_forces(&replay->equilibrium, time, u, force);
+static Status find_forces(FemReplay *replay, double time, const double *u, const double *v, double *force) {
+  Status status = fem_equilibrium_forces_moving(&replay->equilibrium, time, u, v, force);
   if (status != STATUS_RETRY) return status;
   TRY(fem_equilibrium_renew(&replay->equilibrium, time, u));
-  return fem_equilibrium_forces(&replay->equilibrium, time, u, force);
+  return fem_equilibrium_forces_moving(&replay->equilibrium, time, u, v, force);
 }
 
 // f − M v̇ at u of step k into `force`; the largest value.
@@ -144,12 +152,12 @@ static Status find_residual(FemReplay *replay, int k, double *left) {
   FemReplayFormula formula = fem_replay_formula(replay, k);
   size_t n = (size_t)replay->n;
   double *u = replay->u + n * (size_t)k, *v = replay->v + n * (size_t)k;
-  TRY(find_forces(replay, replay->steps->times[k], u, replay->force));
+  for (size_t i = 0; i < n; i++)
+    v[i] = formula.c * u[i] + formula.near * u[i - n] + (k > 1 ? formula.far * u[i - 2 * n] : 0);
+  TRY(find_forces(replay, replay->steps->times[k], u, v, replay->force));
   for (size_t i = 0; i < n; i++) {
-    double far_u = k > 1 ? u[i - 2 * n] : 0, far_v = k > 1 ? v[i - 2 * n] : 0;
-    v[i] = formula.c * u[i] + formula.near * u[i - n] + formula.far * far_u;
-    replay->force[i] -=
-        fem_replay_mass(replay, (int)i) * (formula.c * v[i] + formula.near * v[i - n] + formula.far * far_v);
+    double far = k > 1 ? formula.far * v[i - 2 * n] : 0;
+    replay->force[i] -= fem_replay_mass(replay, (int)i) * (formula.c * v[i] + formula.near * v[i - n] + far);
   }
   *left = fem_equilibrium_largest(replay->force, replay->n);
   return STATUS_OK;
@@ -163,7 +171,7 @@ static double scale_of(const FemReplay *replay, int k, double c) {
   return scale;
 }
 
-// (−∂f/∂u + c² M) x by a difference of forces.
+// (−∂f/∂u − c ∂f/∂v + c² M) x by a difference of forces.
 static Status multiply(void *self, const double *x, double *y) {
   FemReplay *replay = self;
   int n = replay->n;
@@ -172,32 +180,36 @@ static Status multiply(void *self, const double *x, double *y) {
   memset(y, 0, (size_t)n * sizeof *y);
   if (!(largest > 0)) return STATUS_OK;
   for (int side = 1; side >= -1; side -= 2) {
-    for (int i = 0; i < n; i++) replay->ahead[i] = replay->middle[i] + side * share * x[i];
-    TRY(find_forces(replay, time, replay->ahead, replay->aside));
+    for (int i = 0; i < n; i++) {
+      replay->ahead[i] = replay->middle[i] + side * share * x[i];
+      replay->rate[i] = replay->speed[i] + side * share * replay->c * x[i];
+    }
+    TRY(find_forces(replay, time, replay->ahead, replay->rate, replay->aside));
     for (int i = 0; i < n; i++) y[i] -= side * replay->aside[i] / (2 * share);
   }
   for (int i = 0; i < n; i++) y[i] += replay->c * replay->c * fem_replay_mass(replay, i) * x[i];
   return STATUS_OK;
 }
 
-// Newton's step from u, whose residual is in `force`.
-static Status find_step(FemReplay *replay, double time, const double *u, double c) {
+// Newton's step from u and v, whose residual is in `force`.
+static Status find_step(FemReplay *replay, double time, const double *u, const double *v, double c) {
   double residual;
-  TRY(fem_equilibrium_factorise(&replay->equilibrium, time, u, c * c));
-  if (!replay->stick) return fem_equilibrium_solve(&replay->equilibrium, replay->force, replay->step);
+  TRY(fem_equilibrium_factorise_moving(&replay->equilibrium, time, u, v, c, c * c));
+  if (replay->is_exact) return fem_equilibrium_solve(&replay->equilibrium, replay->force, replay->step);
   replay->c = c;
   replay->middle = u;
+  replay->speed = v;
   return fem_krylov_solve(&replay->krylov, replay->force, INEXACT, replay->step, &residual);
 }
 
 static Status balance(FemReplay *replay, int k) {
   double c = fem_replay_formula(replay, k).c, time = replay->steps->times[k], left;
   size_t n = (size_t)replay->n;
-  double *u = replay->u + n * (size_t)k;
+  double *u = replay->u + n * (size_t)k, *v = replay->v + n * (size_t)k;
   TRY(find_residual(replay, k, &left));
   for (int i = 0; i < MAX_ITERATIONS && left > 0; i++) {
     double last = left;
-    TRY(find_step(replay, time, u, c));
+    TRY(find_step(replay, time, u, v, c));
     for (size_t j = 0; j < n; j++) u[j] += replay->step[j];
     TRY(find_residual(replay, k, &left));
     double scale = scale_of(replay, k, c);
@@ -277,10 +289,11 @@ static void recall(FemReplay *replay, int k, FemState *state) {
 
 Status fem_replay_return(FemReplay *replay, int k) {
   double c = fem_replay_formula(replay, k).c, time = replay->steps->times[k];
-  double *u = replay->u + (size_t)replay->n * (size_t)k;
+  size_t place = (size_t)replay->n * (size_t)k;
+  const double *u = replay->u + place, *v = replay->v + place;
   recall(replay, k > 0 ? k - 1 : 0, &replay->before);
   replay->state.last = &replay->before;
   TRY(fem_equilibrium_renew(&replay->equilibrium, time, u));
   if (k == 0) return fem_system_couple(&replay->system, &replay->state);
-  return fem_equilibrium_factorise(&replay->equilibrium, time, u, c * c);
+  return fem_equilibrium_factorise_moving(&replay->equilibrium, time, u, v, c, c * c);
 }

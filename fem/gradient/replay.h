@@ -5,8 +5,8 @@
 //   v_n = c u_n + a₁ u_{n−1} + a₂ u_{n−2},   M (c v_n + a₁ v_{n−1} + a₂ v_{n−2}) = f(u_n, t_n; history),
 //
 // a static scene from equilibrium to equilibrium (c = a₁ = a₂ = 0). The replay differs from the run by the
-// error of its steps. Friction's matrix is not exact, so where there is friction Newton's method solves its
-// systems by GMRES on differences of forces.
+// error of its steps. The matrices of friction and of damping are not exact, so where there is one of them
+// Newton's method solves its systems by GMRES on differences of forces.
 #ifndef TETLAP_FEM_GRADIENT_REPLAY_H
 #define TETLAP_FEM_GRADIENT_REPLAY_H
 
@@ -36,18 +36,20 @@ typedef struct FemReplay {
   FemSystem system;
   FemState before, state; // of the step before, and the one under trial
   FemEquilibrium equilibrium;
-  FemKrylov krylov;            // where there is friction
-  void *stick;                 // friction's effect, borrowed; NULL: none
-  int n;                       // unknowns
-  double *u, *v;               // of all steps                              (count, n)
-  double *force, *step;        // scratch                                   (n)
-  double *ahead, *aside;       // scratch, where there is friction          (n)
-  FemEffectHistory *histories; // of all steps                              (count, FEM_MAX_EFFECTS)
-  unsigned char *slips;        // 0: apart, 1: sticks, 2: slips             (interfaces, contact vertices)
-  double worst;                // what is left in a step, as a share of the largest force
-  long long switches;          // between sticking and slipping, of vertices from step to step
-  double c;                    // of the step that is balanced
-  const double *middle;        // its u
+  FemKrylov krylov;             // where there is friction or damping
+  void *stick;                  // friction's effect, borrowed; NULL: none
+  bool is_exact;                // the matrix: neither friction nor damping
+  int n;                        // unknowns
+  double *u, *v;                // of all steps                              (count, n)
+  double *force, *step;         // scratch                                   (n)
+  double *ahead, *aside;        // scratch, where the matrix is not exact    (n)
+  double *rate;                 // the same, velocities                      (n)
+  FemEffectHistory *histories;  // of all steps                              (count, FEM_MAX_EFFECTS)
+  unsigned char *slips;         // 0: apart, 1: sticks, 2: slips             (interfaces, contact vertices)
+  double worst;                 // what is left in a step, as a share of the largest force
+  long long switches;           // between sticking and slipping, of vertices from step to step
+  double c;                     // of the step that is balanced
+  const double *middle, *speed; // its u, its v
 } FemReplay;
 
 Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemReplaySteps *steps);
@@ -55,8 +57,8 @@ void fem_replay_destroy(FemReplay *replay); // also of a zeroed one
 
 // STATUS_SOLVER: a step cannot be balanced; the message says which.
 Status fem_replay_go(FemReplay *replay);
-// Step k as it was found: `state` is there, `before` at step k − 1, the matrix K + c² M is factorised. Of
-// step 0 nothing is.
+// Step k as it was found: `state` is there, `before` at step k − 1, the matrix K + c D + c² M is factorised.
+// Of step 0 nothing is.
 Status fem_replay_return(FemReplay *replay, int k);
 
 // Of step k; before and beyond the steps, and of a static scene, 0.

@@ -4,6 +4,16 @@
 #include "base/memory.h"
 #include "fem/effect/contact/contact.h"
 
+// As if nothing moved, where damping has no stiffness.
+static Status assemble(FemTangent *tangent, size_t count) {
+  FemState still = *tangent->state;
+  still.velocities = memory_zeroed(count, sizeof *still.velocities);
+  if (!still.velocities) return status_no_memory("the stiffness of all coordinates");
+  Status status = fem_system_assemble(tangent->system, &still, 1, 0, 0, &tangent->stiffness);
+  memory_free(still.velocities);
+  return status;
+}
+
 Status fem_tangent_create(FemTangent *tangent, FemSystem *system, const FemState *state) {
   *tangent = (FemTangent){.system = system, .state = state};
   int count = 3 * system->model->vertex_count;
@@ -17,7 +27,7 @@ Status fem_tangent_create(FemTangent *tangent, FemSystem *system, const FemState
   if (!tangent->every_dof) return status_no_memory("the stiffness of all coordinates");
   for (int dof = 0; dof < count; dof++) tangent->every_dof[dof] = dof;
   TRY(fem_matrix_create(&tangent->stiffness, system->pattern, tangent->every_dof));
-  return fem_system_assemble(system, state, 1, 0, 0, &tangent->stiffness);
+  return assemble(tangent, (size_t)count);
 }
 
 void fem_tangent_destroy(FemTangent *tangent) {

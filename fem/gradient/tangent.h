@@ -6,17 +6,19 @@
 
 #include "contact/system.h"
 #include "fem/effect/system.h"
+#include "fem/gradient/damping.h"
 #include "fem/gradient/friction.h"
 
 typedef struct FemTangent {
   FemSystem *system;      // borrowed
   const FemState *state;  // borrowed
-  FemMatrix stiffness;    // K = −∂f/∂x over all coordinates
+  FemMatrix stiffness;    // K = −∂f/∂x at rest over all coordinates
   int *every_dof;         // 0, 1, 2 …                                    (3·vertex_count)
   ContactSystem *contact; // borrowed; NULL: the scene has none
   int interface_count;
   void *stick;           // friction's effect, borrowed; NULL: the scene has none
   FemFriction *friction; // where derivatives by friction are added, borrowed; NULL: nowhere
+  FemDamping *damping;   // the same by damping
 } FemTangent;
 
 // At a state at which the system's pattern has been laid out (fem_system_couple). Destroy it also after a
@@ -24,8 +26,8 @@ typedef struct FemTangent {
 Status fem_tangent_create(FemTangent *tangent, FemSystem *system, const FemState *state);
 void fem_tangent_destroy(FemTangent *tangent);
 
-// y = K x, both (vertex_count, 3), but for friction's part, which is not exact. Those of a mesh obstacle's
-// vertices lack contact.
+// y = K x, both (vertex_count, 3), but for the parts of friction and damping, which are not exact. Those of a
+// mesh obstacle's vertices lack contact.
 Status fem_tangent_multiply(const FemTangent *tangent, const double *x, double *y);
 
 const ContactInterfaceDef *fem_tangent_interface(const FemTangent *tangent, int interface);

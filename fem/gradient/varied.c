@@ -19,12 +19,13 @@ Status fem_varied_create(FemVaried *varied, const FemModel *model) {
   varied->force = memory_zeroed(3 * (size_t)model->vertex_count, sizeof *varied->force);
   if (!varied->model.parts || !varied->force) return status_no_memory("other materials");
   TRY(create_effect(&varied->elasticity, &fem_effect_elasticity, &varied->model));
-  return create_effect(&varied->volume, &fem_effect_volume, &varied->model);
+  TRY(create_effect(&varied->volume, &fem_effect_volume, &varied->model));
+  return create_effect(&varied->damping, &fem_effect_damping, &varied->model);
 }
 
 void fem_varied_destroy(FemVaried *varied) {
-  FemEffect *effects[] = {&varied->elasticity, &varied->volume};
-  for (int i = 0; i < 2; i++)
+  FemEffect *effects[] = {&varied->elasticity, &varied->volume, &varied->damping};
+  for (int i = 0; i < 3; i++)
     if (effects[i]->self) effects[i]->ops->destroy(effects[i]->self);
   memory_free(varied->model.parts);
   memory_free(varied->force);
@@ -79,6 +80,15 @@ static void vary(FemModelPart *to, const FemModelPart *from, double ratio, FemPa
   case FEM_PARAMETER_OGDEN_SHARE:
     vary_share(&to->local, &from->local, place, step);
     break;
+  case FEM_PARAMETER_DAMPING:
+    to->damping += step;
+    break;
+  case FEM_PARAMETER_VISCOSITY:
+    to->local.viscosity += step;
+    break;
+  case FEM_PARAMETER_BULK_VISCOSITY:
+    to->local.bulk_viscosity += step;
+    break;
   default: // of the fibres
     to->local.fibre_stiffness += step;
     break;
@@ -86,7 +96,8 @@ static void vary(FemModelPart *to, const FemModelPart *from, double ratio, FemPa
 }
 
 // So long that the change is not lost in rounding, and short beside where the law has a pole.
-static double step_of(const FemMaterial *material, FemParameterKind constant, int place) {
+static double step_of(const FemModelPart *part, FemParameterKind constant, int place) {
+  const FemMaterial *material = &part->material;
   static const double SHARE = 0.1, OF_EXPONENT = 5e-3;
   switch (constant) {
   case FEM_PARAMETER_YOUNG:
@@ -99,19 +110,25 @@ static double step_of(const FemMaterial *material, FemParameterKind constant, in
     return SHARE * (material->shares[0] + material->shares[1] + material->shares[2]);
   case FEM_PARAMETER_FIBRE:
     return SHARE * material->fibre_stiffness;
+  case FEM_PARAMETER_DAMPING:
+    return SHARE * part->damping;
+  case FEM_PARAMETER_VISCOSITY:
+    return SHARE * material->viscosity;
+  case FEM_PARAMETER_BULK_VISCOSITY:
+    return SHARE * material->bulk_viscosity;
   default: // mooney_rivlin's share
     return SHARE;
   }
 }
 
-// Adds `weight` times the elastic forces and energy.
-static Status add_elastic(FemVaried *varied, const FemState *state, double weight, double *force,
-                          double *energy) {
-  const FemEffect *effects[] = {&varied->elasticity, &varied->volume};
+// Adds `weight` times the forces of materials and the elastic energy.
+static Status add_material(FemVaried *varied, const FemState *state, double weight, double *force,
+                           double *energy) {
+  const FemEffect *effects[] = {&varied->elasticity, &varied->volume, &varied->damping};
   size_t count = 3 * (size_t)varied->model.vertex_count;
   FemEnergy sum = {0};
   memset(varied->force, 0, count * sizeof *varied->force);
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < 3; i++) {
     if (!effects[i]->self) continue;
     TRY(effects[i]->ops->add_force(effects[i]->self, state, varied->force));
     TRY(effects[i]->ops->add_energy(effects[i]->self, state, &sum));
@@ -126,11 +143,11 @@ Status fem_varied_derive(FemVaried *varied, int part, FemParameterKind constant,
   FemModelPart *own = &varied->model.parts[part];
   const FemModelPart kept = *own;
   double ratio = fem_model_largest_ratio(&varied->model.bodies[own->body]);
-  double step = step_of(&kept.material, constant, place);
+  double step = step_of(&kept, constant, place);
   Status status = STATUS_OK;
   for (int k = 0; k < FEM_DIFFERENCE_POINTS && !status; k++) {
     vary(own, &kept, ratio, constant, place, fem_difference[k].place * step);
-    status = add_elastic(varied, state, fem_difference[k].weight / step, force, energy);
+    status = add_material(varied, state, fem_difference[k].weight / step, force, energy);
   }
   *own = kept;
   return status;

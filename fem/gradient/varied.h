@@ -3,8 +3,8 @@
 // contact stiffness that is chosen, depend on them.
 //
 // Every law's force is linear in λ, μ, in mooney_rivlin's share, in ogden's shares and in the modulus of
-// fibres, so that half the difference of two forces is the derivative, up to rounding. Ogden's exponents
-// alone take a difference of sixth order.
+// fibres, that of damping in β and viscosities, too, so that half the difference of two forces is the
+// derivative, up to rounding. Ogden's exponents alone take a difference of sixth order.
 #ifndef TETLAP_FEM_GRADIENT_VARIED_H
 #define TETLAP_FEM_GRADIENT_VARIED_H
 
@@ -12,16 +12,16 @@
 #include "fem/gradient/parameter.h"
 
 typedef struct FemVaried {
-  FemModel model;               // borrows all but `parts`
-  FemEffect elasticity, volume; // of that model; without `self`: the scene has none
-  double *force;                // scratch                                  (vertex_count, 3)
+  FemModel model;                        // borrows all but `parts`
+  FemEffect elasticity, volume, damping; // of that model; without `self`: the scene has none
+  double *force;                         // scratch                                  (vertex_count, 3)
 } FemVaried;
 
 Status fem_varied_create(FemVaried *varied, const FemModel *model);
 void fem_varied_destroy(FemVaried *varied); // also of a zeroed one
 
-// Adds the derivatives of the elastic forces [N] and energy [J] at a state by a constant of the
-// material of a part (fem_parameter_is_of_material); `place`: which of ogden's three.
+// Adds the derivatives of elastic and damping forces [N] and of the elastic energy [J] at a state by a
+// constant of the material of a part (fem_parameter_is_of_material); `place`: which of ogden's three.
 Status fem_varied_derive(FemVaried *varied, int part, FemParameterKind constant, int place,
                          const FemState *state, double *force, double *energy);
 

@@ -27,25 +27,35 @@ Status fem_equilibrium_renew(FemEquilibrium *equilibrium, double time, const dou
   return fem_system_renew(equilibrium->system, equilibrium->state);
 }
 
-Status fem_equilibrium_forces(FemEquilibrium *equilibrium, double time, const double *u, double *force) {
+Status fem_equilibrium_forces_moving(FemEquilibrium *equilibrium, double time, const double *u,
+                                     const double *v, double *force) {
   FemSystem *system = equilibrium->system;
-  fem_system_scatter(system, time, u, NULL, equilibrium->state);
+  fem_system_scatter(system, time, u, v, equilibrium->state);
   TRY(fem_system_forces(system, equilibrium->state));
   const FemNumbering *numbering = &system->numbering;
   for (int i = 0; i < numbering->count; i++) force[i] = system->forces[numbering->dof_of_unknown[i]];
   return STATUS_OK;
 }
 
-Status fem_equilibrium_factorise(FemEquilibrium *equilibrium, double time, const double *u, double shift) {
+Status fem_equilibrium_forces(FemEquilibrium *equilibrium, double time, const double *u, double *force) {
+  return fem_equilibrium_forces_moving(equilibrium, time, u, NULL, force);
+}
+
+Status fem_equilibrium_factorise_moving(FemEquilibrium *equilibrium, double time, const double *u,
+                                        const double *v, double damping, double shift) {
   FemSystem *system = equilibrium->system;
-  fem_system_scatter(system, time, u, NULL, equilibrium->state);
+  fem_system_scatter(system, time, u, v, equilibrium->state);
   TRY(fem_system_couple(system, equilibrium->state));
-  TRY(fem_system_assemble(system, equilibrium->state, 1, 0, shift, &system->matrix));
+  TRY(fem_system_assemble(system, equilibrium->state, 1, damping, shift, &system->matrix));
   if (equilibrium->layout != system->matrix.layout) {
     TRY(equilibrium->ops->analyse(equilibrium->solver, &system->matrix));
     equilibrium->layout = system->matrix.layout;
   }
   return equilibrium->ops->factorise(equilibrium->solver, &system->matrix, NULL, NULL, 0);
+}
+
+Status fem_equilibrium_factorise(FemEquilibrium *equilibrium, double time, const double *u, double shift) {
+  return fem_equilibrium_factorise_moving(equilibrium, time, u, NULL, 0, shift);
 }
 
 Status fem_equilibrium_solve(FemEquilibrium *equilibrium, const double *b, double *x) {

@@ -26,6 +26,11 @@ Status fem_equilibrium_renew(FemEquilibrium *equilibrium, double time, const dou
 Status fem_equilibrium_forces(FemEquilibrium *equilibrium, double time, const double *u, double *force);
 // Factorises K + shift · M at (time, u). RETRY: not positive definite.
 Status fem_equilibrium_factorise(FemEquilibrium *equilibrium, double time, const double *u, double shift);
+// The same in motion, where the unknowns have the velocities v: forces, and K + damping · D + shift · M.
+Status fem_equilibrium_forces_moving(FemEquilibrium *equilibrium, double time, const double *u,
+                                     const double *v, double *force);
+Status fem_equilibrium_factorise_moving(FemEquilibrium *equilibrium, double time, const double *u,
+                                        const double *v, double damping, double shift);
 Status fem_equilibrium_solve(FemEquilibrium *equilibrium, const double *b, double *x);
 
 // The largest absolute value.

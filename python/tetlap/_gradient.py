@@ -65,7 +65,7 @@ def _arrays(found, of, by):
 
 
 def gradient(scene: Scene, of: str | list[str], by: str | list[str], *, set: Settings = None, total: bool = False) -> dict:  # noqa: A002
-    """Runs a static scene, or a motion without damping, to its end; what quantities are there, and their
+    """Runs a static scene or a motion to its end; what quantities are there, and their
     exact derivatives, as a dict of arrays.
 
     scene: a scene file's path, or a dict with the same keys (docs/scene.md). Nothing is written.

@@ -30,7 +30,7 @@ static const AppOption option_table[] = {
      1, CLI_REPEATED, CLI_TO(Options, of), .most = MAX_GOALS, .example = "--of",
      .count_offset = offsetof(Options, of_count)},
     {"by", 0, "KEY,...",
-     "By these keys of the scene: materials, loads, motions, places, contact.stiffness, contact.friction, "
+     "By these keys of the scene: materials, damping, loads, motions, places, contact.stiffness, contact.friction, "
      "effects.gravity[K]; "
      "docs/gradients.md lists them",
      1, CLI_LIST, CLI_TO(Options, by), .most = MAX_PARAMETERS, .example = "contact.stiffness",
@@ -222,7 +222,7 @@ const AppCommand app_command_gradient = {
     .arguments = &(const AppArguments){"SCENE", offsetof(Options, job.scene_path), 1,
                                        .missing = "name a scene file, as in examples/26_hertz.yaml",
                                        .excess = "one scene at a time; '%s' is the second"},
-    .doc = "Run a static scene, or a motion without damping, to its end, and "
+    .doc = "Run a static scene or a motion to its end, and "
            "print the exact derivatives of quantities g "
            "there by parameters p, from one solve for each g.\vThe share p dg/dp / g says by how many per "
            "cent g "

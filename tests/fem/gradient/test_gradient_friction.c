@@ -33,6 +33,21 @@ START_TEST(a_slab_between_obstacles_agrees_with_differences_of_replays) {
 }
 END_TEST
 
+START_TEST(a_body_that_rubs_on_itself_agrees_with_differences_of_replays) {
+  const Asked asked = {
+      .scene = "gradient_clamp",
+      .setting = "time.end=1",
+      .tolerance = 1e-6,
+      .least_steps = 6,
+      .least_switches = 20,
+      .of = {"displacement:clamp:x", "position:clamp:20:y", "reaction:clamp:driven[0]:x", "energy"},
+      .by = {"bodies.clamp.material.young", "bodies.clamp.material.poisson", "contact.friction",
+             "contact.stiffness", "bodies.clamp.driven[0].table[2][1]",
+             "bodies.clamp.driven[0].table[1][3]"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
 // Where it ends in contact, pairs that begin to overlap within a difference make kinks in the force.
 START_TEST(a_block_that_sticks_and_slips_in_motion_agrees_with_differences_of_replays) {
   const Asked asked = {.scene = "gradient_slide",
@@ -51,6 +66,7 @@ int main(void) {
   TCase *test_case = tcase_create("gradient_friction");
   tcase_add_test(test_case, a_block_that_is_rubbed_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_slab_between_obstacles_agrees_with_differences_of_replays);
+  tcase_add_test(test_case, a_body_that_rubs_on_itself_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_block_that_sticks_and_slips_in_motion_agrees_with_differences_of_replays);
   return suite_run("gradient_friction", test_case, 600);
 }

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gradients of motions against central differences of replays with the same steps, and what has none.
+#include "base/memory.h"
+#include "base/random.h"
+#include "fem/gradient/damping.h"
 #include "replays.h"
 
 START_TEST(a_block_thrown_upon_a_shaken_one_agrees_with_differences_of_replays) {
@@ -39,6 +42,84 @@ START_TEST(a_block_of_two_materials_agrees_with_differences_of_replays) {
 }
 END_TEST
 
+START_TEST(a_damped_block_thrown_upon_another_agrees_with_differences_of_replays) {
+  const Asked asked = {
+      .scene = "gradient_damped",
+      .setting = "time.end=0.03",
+      .tolerance = 1e-6,
+      .of = {"displacement:upper:z", "position:upper:3:x", "reaction:lower:driven[0]:x", "energy"},
+      .by = {"effects.damping", "bodies.upper.material.damping", "bodies.upper.material.viscosity",
+             "bodies.upper.material.bulk_viscosity", "bodies.lower.material.young",
+             "bodies.upper.material.density", "bodies.upper.velocity[2]", "bodies.lower.driven[0].spin"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
+// λ · f where positions and velocities are `share` along a way.
+static double work_along(FemSystem *system, const FemState *state, const double *way, const double *lambda,
+                         double share, bool moves) {
+  size_t count = 3 * (size_t)system->model->vertex_count;
+  double *there = memory_copy(moves ? state->positions : state->velocities, count, sizeof *there);
+  double *force = memory_zeroed(count, sizeof *force), work = 0;
+  FemState other = *state;
+  *(moves ? &other.positions : &other.velocities) = there;
+  for (size_t i = 0; i < count; i++) there[i] += share * way[i];
+  ck_assert_ok(fem_effect_damping.add_force(fem_system_effect(system, &fem_effect_damping), &other, force));
+  for (size_t i = 0; i < count; i++) work += lambda[i] * force[i];
+  memory_free(there);
+  memory_free(force);
+  return work;
+}
+
+// Forces are quadratic in positions: what the derivative leaves falls by four where the way is halved. They
+// are linear in velocities: it leaves nothing.
+static void check_pull(FemSystem *system, FemState *state, FemDamping *damping, double *way, double *lambda) {
+  size_t count = damping->value_count;
+  Random random = random_seeded(7, 0);
+  for (size_t i = 0; i < count; i++) {
+    state->positions[i] += 0.01 * (random_between(&random, -0.5, 0.5));
+    state->velocities[i] = random_between(&random, -0.5, 0.5);
+    way[i] = 0.01 * (random_between(&random, -0.5, 0.5));
+    lambda[i] = 1e-3 * (random_between(&random, -0.5, 0.5));
+  }
+  fem_damping_begin(damping, state);
+  ck_assert_ok(fem_damping_pull(damping, lambda, 1));
+  for (int moves = 0; moves < 2; moves++) {
+    double slope = 0, left[3], here = work_along(system, state, way, lambda, 0, moves);
+    for (size_t i = 0; i < count; i++) slope += way[i] * (moves ? damping->now : damping->rate)[i];
+    ck_assert_double_gt(fabs(slope), 0);
+    for (int k = 0; k < 3; k++) {
+      double share = 1.0 / (1 << k);
+      left[k] = work_along(system, state, way, lambda, share, moves) - here - share * slope;
+    }
+    if (!moves) ck_assert_double_le(fabs(left[0]), 1e-12 * fabs(here));
+    if (!moves) continue;
+    ck_assert_double_gt(fabs(left[0]), 1e-6 * fabs(slope));
+    for (int k = 0; k < 2; k++) ck_assert_near(left[k], 4 * left[k + 1], 1e-9 * fabs(left[k]));
+  }
+}
+
+START_TEST(what_damping_has_by_positions_and_velocities_leaves_the_second_order) {
+  SceneRun scene;
+  FemSystem system;
+  FemState state;
+  FemDamping damping;
+  scene_open(&scene, "gradient_damped", NULL);
+  ck_assert_ok(fem_system_create(&system, &scene.model));
+  ck_assert_ok(fem_system_create_state(&system, &state));
+  ck_assert_ok(fem_damping_create(&damping, &system));
+  double *way = memory_zeroed(damping.value_count, sizeof *way);
+  double *lambda = memory_zeroed(damping.value_count, sizeof *lambda);
+  check_pull(&system, &state, &damping, way, lambda);
+  memory_free(way);
+  memory_free(lambda);
+  fem_damping_destroy(&damping);
+  fem_state_destroy(&state);
+  fem_system_destroy(&system);
+  scene_close(&scene);
+}
+END_TEST
+
 static void refuse(const char *override, const char *by, const char *why) {
   SceneRun scene;
   FemParameter parameter;
@@ -57,8 +138,6 @@ static void refuse(const char *override, const char *by, const char *why) {
 
 START_TEST(motions_without_a_gradient_are_refused_by_name) {
   const char *young = "bodies.upper.material.young";
-  refuse("effects.damping=1e-3", young, "body 'lower' is damped");
-  refuse("bodies.upper.material.viscosity=10", young, "body 'upper' is damped");
   refuse("contact.viscosity=1", young, "contact.viscosity");
   refuse("contact.friction={coefficient: 0.2, static: 0.3}", young, "contact.friction.static");
   refuse("contact.rest={speed: 1e-3}", young, "contact.rest");
@@ -66,7 +145,10 @@ START_TEST(motions_without_a_gradient_are_refused_by_name) {
          young, "contact.law");
   refuse("bodies.lower.driven[0].release=0.01", young, "released");
   refuse("time.end=0.06", "bodies.upper.place.translate[0]", "static scenes alone");
-  refuse("time.end=0.06", "bodies.upper.material.damping", "no derivative by damping");
+  refuse("time.end=0.06", "bodies.upper.material.damping", "body 'upper' has no such constant of its own");
+  refuse("effects.damping=1e-3", "bodies.upper.material.damping", "give it a value");
+  refuse("time.end=0.06", "effects.damping", "effects.damping is not given or 0");
+  refuse("time.end=0.06", "contact.viscosity", "no derivative by the viscosity of contact");
   refuse("time.end=0.06", young, "made no step");
 }
 END_TEST
@@ -76,6 +158,8 @@ int main(void) {
   tcase_add_test(test_case, a_block_thrown_upon_a_shaken_one_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_block_of_two_materials_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_motion_that_ends_in_contact_agrees_with_differences_of_replays);
+  tcase_add_test(test_case, a_damped_block_thrown_upon_another_agrees_with_differences_of_replays);
+  tcase_add_test(test_case, what_damping_has_by_positions_and_velocities_leaves_the_second_order);
   tcase_add_test(test_case, motions_without_a_gradient_are_refused_by_name);
   return suite_run("gradient_motion", test_case, 300);
 }
