@@ -118,12 +118,13 @@ int app_program_run(const AppCommand *root, int argument_count, char **arguments
 }
 
 // Threads that wait shall sleep soon: on a machine that others use too, spinning ones held a matrix product
-// of 20 k vertices for 17 ms instead of 2.4 ms. Sleeping at once costs a tenth of a run on two cores, so they
-// spin some microseconds. libgomp reads this before main, so the program starts itself once more; only for
-// commands that have threads, since a start takes a hundredth of a second.
+// of 20 k vertices for 17 ms instead of 2.4 ms. Sleeping at once makes a run on two cores slower than on one,
+// so they spin some microseconds; five times as long gains nothing there and doubles the time on a busy
+// machine. libgomp reads this before main, so the program starts itself once more; only for commands that
+// have threads, since a start takes a hundredth of a second.
 static void let_threads_sleep(char **arguments) {
   bool is_set = getenv("OMP_WAIT_POLICY") || setenv("OMP_WAIT_POLICY", "passive", 1) != 0;
-  if (is_set || setenv("GOMP_SPINCOUNT", "5000", 0) != 0) return;
+  if (is_set || setenv("GOMP_SPINCOUNT", "1000", 0) != 0) return;
   execv("/proc/self/exe", arguments); // where that fails, the run is only slower
 }
 
