@@ -44,6 +44,18 @@ static Status add_comparison(AppReport *report, const char *directory, int max_f
   return STATUS_OK;
 }
 
+// The verdicts of `tetlap verdict`, without their runs.
+static Status add_verdict(AppReport *report, const char *directory, const char *path, bool is_alone) {
+  if (!is_alone)
+    return status_fail(STATUS_USAGE, "%s: holds a verdict, which has a page of its own; give it alone",
+                       directory);
+  TRY(record_read(&report->verdict, path));
+  TRY(app_format_check(report->verdict, directory, "verdict.json", NULL));
+  if (record_count(record_find(report->verdict, "models")) > 0) return STATUS_OK;
+  return status_fail(STATUS_INPUT, "%s: judges no model yet; give its `tetlap verdict` again, which goes on",
+                     path);
+}
+
 Status app_report_collect(AppReport *report, const char *directory, bool is_alone, int max_frames) {
   struct stat info;
   if (stat(directory, &info) != 0)
@@ -52,17 +64,21 @@ Status app_report_collect(AppReport *report, const char *directory, bool is_alon
   if (!S_ISDIR(info.st_mode))
     return status_fail(STATUS_INPUT, "%s: is not a directory; give the DIR of `tetlap run SCENE -o DIR`",
                        directory);
-  char *comparison = file_join(directory, "compare.json"), *summary = file_join(directory, "summary.json");
-  Status status = comparison && summary ? STATUS_OK : status_no_memory("a file name");
+  char *comparison = file_join(directory, "compare.json"), *summary = file_join(directory, "summary.json"),
+       *verdict = file_join(directory, "verdict.json");
+  Status status = comparison && summary && verdict ? STATUS_OK : status_no_memory("a file name");
   bool is_comparison = !status && file_exists(comparison) && !file_exists(summary);
   if (is_comparison && !is_alone)
     status = status_fail(STATUS_USAGE, "%s: holds several runs; give their directories, or this one alone",
                          directory);
   if (is_comparison && !status) status = record_read(&report->comparison, comparison);
   if (!status)
-    status = is_comparison ? add_comparison(report, directory, max_frames)
-                           : add_run(report, directory, max_frames);
+    status = is_comparison          ? add_comparison(report, directory, max_frames)
+             : file_exists(summary) ? add_run(report, directory, max_frames)
+             : file_exists(verdict) ? add_verdict(report, directory, verdict, is_alone)
+                                    : add_run(report, directory, max_frames);
   memory_free(comparison);
   memory_free(summary);
+  memory_free(verdict);
   return status;
 }

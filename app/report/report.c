@@ -168,8 +168,9 @@ static void record_rest(AppReport *report, Record *data) {
   record_adopt(data, "comparison", report->comparison);
   record_adopt(data, "pareto", report->pareto);
   record_adopt(data, "sweep", report->sweep);
+  record_adopt(data, "verdict", report->verdict);
   record_adopt(data, "live", report->live);
-  report->comparison = report->pareto = report->sweep = report->live = NULL;
+  report->comparison = report->pareto = report->sweep = report->verdict = report->live = NULL;
   record_stresses(report, data);
   if (report->bench_count == 0) return;
   RecordList *benches = record_list(data, "benches");
@@ -352,6 +353,7 @@ void app_report_destroy(AppReport *report) {
   record_destroy(report->comparison);
   record_destroy(report->pareto);
   record_destroy(report->sweep);
+  record_destroy(report->verdict);
   record_destroy(report->live);
   *report = (AppReport){0};
 }

@@ -18,6 +18,7 @@ typedef struct AppReport {
   Record *comparison; // compare.json
   Record *pareto;     // pareto.json
   Record *sweep;      // sweep.json
+  Record *verdict;    // verdict.json
   Record *live;       // how far the run is that the page is to follow (app/view); NULL: a page for itself
   Record *benches[APP_REPORT_MAX_BENCHES];
   int bench_count;

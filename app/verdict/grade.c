@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/verdict/grade.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
@@ -41,6 +42,10 @@ static const Condition run_conditions[] = {
     {APP_VERDICT_MOTION, "off the path of clip, over the scene's size", IN(path_error), .01, false},
 };
 
+static const Condition gap_condition = {APP_VERDICT_MOTION, "of the impulses missing", IN(momentum_gap), 1e-3,
+                                        false}; // none in statics
+static const Condition end_condition = {APP_VERDICT_MOTION, "of the scenes' runs finished", 0, 1, true};
+
 static double figure(const void *from, size_t offset) {
   double value;
   memcpy(&value, (const char *)from + offset, sizeof value);
@@ -67,10 +72,9 @@ static void judge_runs(const AppVerdictFindings *findings, AppVerdictGrade *grad
       if (!is_met(&run_conditions[c], value))
         refuse(&grades[run_conditions[c].use], &run_conditions[c], value, run->scene);
     }
-    static const Condition gap = {APP_VERDICT_MOTION, "of the impulses missing", IN(momentum_gap), 1e-3,
-                                  false};
     AppVerdictGrade *motion = &grades[APP_VERDICT_MOTION];
-    if (run->momentum_gap > gap.bound) refuse(motion, &gap, run->momentum_gap, run->scene); // none in statics
+    if (run->momentum_gap > gap_condition.bound)
+      refuse(motion, &gap_condition, run->momentum_gap, run->scene);
     if (motion->is_fit && strcmp(run->outcome, "finished") != 0) {
       motion->is_fit = false;
       snprintf(motion->reason, sizeof motion->reason, "%s: %s", run->scene, run->outcome);
@@ -90,4 +94,45 @@ void app_verdict_grade(const AppVerdictFindings *findings, AppVerdictGrade grade
       grades[u].is_fit = false;
       snprintf(grades[u].reason, sizeof grades[u].reason, "no run of a scene is there");
     }
+}
+
+static void record_condition(RecordList *rows, const Condition *condition, double value, const char *scene) {
+  Record *row = record_append(rows);
+  record_text(row, "what", condition->words);
+  record_number(row, "bound", condition->bound);
+  record_bool(row, "least", condition->is_least);
+  record_number(row, "value", value);
+  if (scene) record_text(row, "scene", scene);
+  record_bool(row, "met", is_met(condition, value));
+}
+
+// Of all runs; what was not measured is worst. Runs without a gap of momenta have no part in that condition.
+static void record_worst(const AppVerdictFindings *findings, const Condition *condition, RecordList *rows) {
+  const AppVerdictRun *worst = NULL;
+  double most = 0;
+  for (int r = 0; r < findings->run_count; r++) {
+    const double value = figure(&findings->runs[r], condition->offset);
+    if (isnan(value) && condition == &gap_condition) continue;
+    if (worst && (isnan(most) || (condition->is_least ? value >= most : value <= most))) continue;
+    worst = &findings->runs[r], most = value;
+  }
+  if (worst) record_condition(rows, condition, most, worst->scene);
+}
+
+static void record_ends(const AppVerdictFindings *findings, RecordList *rows) {
+  int finished = 0;
+  for (int r = 0; r < findings->run_count; r++)
+    finished += strcmp(findings->runs[r].outcome, "finished") == 0;
+  record_condition(rows, &end_condition, finished / (double)findings->run_count, NULL); // no run: NaN
+}
+
+void app_verdict_grade_record(const AppVerdictFindings *findings, AppVerdictUse use, RecordList *rows) {
+  for (size_t c = 0; c < sizeof conditions / sizeof *conditions; c++)
+    if (conditions[c].use == use)
+      record_condition(rows, &conditions[c], figure(findings, conditions[c].offset), NULL);
+  for (size_t c = 0; c < sizeof run_conditions / sizeof *run_conditions; c++)
+    if (run_conditions[c].use == use) record_worst(findings, &run_conditions[c], rows);
+  if (use != APP_VERDICT_MOTION) return;
+  record_worst(findings, &gap_condition, rows);
+  record_ends(findings, rows);
 }

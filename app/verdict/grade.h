@@ -5,6 +5,7 @@
 #define TETLAP_APP_VERDICT_GRADE_H
 
 #include "app/verdict/findings.h"
+#include "base/files/record.h"
 
 typedef enum AppVerdictUse { APP_VERDICT_DETECT, APP_VERDICT_FORCES, APP_VERDICT_MOTION } AppVerdictUse;
 enum { APP_VERDICT_USES = 3, APP_VERDICT_REASON = 160 };
@@ -18,5 +19,9 @@ typedef struct AppVerdictGrade {
 
 // What was not measured is not met.
 void app_verdict_grade(const AppVerdictFindings *findings, AppVerdictGrade grades[APP_VERDICT_USES]);
+
+// The conditions of a use as rows: `what` in words, the `bound`, whether it is the `least` (else the most),
+// the `value`, of runs the worst with its `scene`, and whether it is `met`.
+void app_verdict_grade_record(const AppVerdictFindings *findings, AppVerdictUse use, RecordList *rows);
 
 #endif

@@ -65,6 +65,7 @@ Record *app_verdict_record(const AppVerdictPlan *plan, const AppVerdictFindings 
     Record *use = record_child(uses, app_verdict_uses[u]);
     record_bool(use, "fit", grades[u].is_fit);
     record_text(use, "reason", grades[u].reason);
+    app_verdict_grade_record(findings, (AppVerdictUse)u, record_list(use, "conditions"));
   }
   app_verdict_findings_record(findings, record);
   return record;

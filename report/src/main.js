@@ -18,6 +18,7 @@ import { createState } from "./state.js";
 import { buildStress } from "./table/stress.js";
 import { buildSweep, sweepTitle } from "./plot/sweep.js";
 import { Transport } from "./view/transport.js";
+import { buildVerdict, verdictTitle } from "./table/verdict.js";
 
 const KEYS = [
   ["Space", "play, pause"],
@@ -105,8 +106,8 @@ function openingTime(data, times) {
 
 const licences = () => document.getElementById("tetlap-licences")?.textContent.trim() ?? "";
 
-const titleOf = ({ runs, sweep, stress, pareto, live }) =>
-  runs[0]?.summary?.title || runs[0]?.manifest?.scene?.title || runs[0]?.name || (sweep && sweepTitle(sweep)) || (stress && !pareto ? "Stability" : live ? "A run to come" : "Overlap models");
+const titleOf = ({ runs, sweep, stress, pareto, live, verdict }) =>
+  runs[0]?.summary?.title || runs[0]?.manifest?.scene?.title || runs[0]?.name || (sweep && sweepTitle(sweep)) || (verdict && verdictTitle(verdict)) || (stress && !pareto ? "Stability" : live ? "A run to come" : "Overlap models");
 
 // What the reader has chosen in a page, for a newer one. Who looks at the last frame goes on to what is the last then.
 function choicesOf({ state, times: old }, times, fields) {
@@ -156,6 +157,7 @@ function build(data, kept) {
     data.comparison && buildComparison(data),
     plots.length > 0 && h("section.block", { id: "plots" }, h("h2", "Over time"), h(".plots", plots.map((plot) => plot.element))),
     buildContacts(runs),
+    data.verdict && buildVerdict(data.verdict),
     data.sweep && buildSweep(data.sweep, state, createState),
     data.pareto && buildFrontier(data.pareto, state),
     data.stress && buildStress(data.stress),

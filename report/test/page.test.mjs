@@ -44,6 +44,23 @@ const STRESS = {
 };
 const STRESS_LATER = { format: "tetlap-stress 1", rows: [{ ...STRESS.rows[6], outcome: "held" }] };
 
+// Two verdicts, one of which a scene decided.
+const grade = (fit, reason, ...conditions) => ({ fit, reason, conditions });
+const condition = (what, bound, value, met, scene) => ({ what, bound, least: what.startsWith("of "), value, met, scene });
+const judged = (model, steps) => ({
+  model,
+  grades: {
+    detect: grade(true, "", condition("of the paper's pairs right", 0.99, 1, true)),
+    forces: grade(false, "nan error of nodal forces on unseen bodies, at most 0.01 is asked", condition("error of nodal forces on unseen bodies", 0.01, null, false)),
+    motion: grade(steps <= 1.5, steps <= 1.5 ? "" : `edge: ${steps} steps over those of clip, at most 1.5 is asked`, condition("steps over those of clip", 1.5, steps, steps <= 1.5, "edge")),
+  },
+  contract: { balance: 1e-16, refused: 2 },
+  pairs: { paper_status: 0.998, moment_error: 0.1 / steps },
+  unseen: { nodal_force_error: null },
+  runs: [{ scene: "edge", kind: "<edges> cross", outcome: steps <= 1.5 ? "finished" : "passed through", share_reached: 1, nodal_force_error: 0.01 * steps, path_error: 1e-3 * steps, momentum_gap: null, steps_ratio: steps }],
+});
+const VERDICTS_MADE = { format: 1, seed: 7, quick: 1, models: [judged("mine", 4.76), judged("geo", 1.08)] };
+
 // A scene over a grid, in which one value is none that a scene can have.
 function makeSweep() {
   const words = ["sweep", scene, "-q", "-o", join(out, "sweep"), "-V", "contact.stiffness=1e5..1e7:3,log", "-V", "bodies.upper.material.poisson=0.3,0.7", "-s", "time.end=0.15", "-s", "output.vtu=false", "-s", "output.frames=5"];
@@ -100,8 +117,11 @@ function makePages() {
   makeFiles();
   writeFileSync(join(out, "stress.json"), JSON.stringify(STRESS));
   writeFileSync(join(out, "later.json"), JSON.stringify(STRESS_LATER));
+  mkdirSync(join(out, "verdict"), { recursive: true });
+  writeFileSync(join(out, "verdict", "verdict.json"), JSON.stringify(VERDICTS_MADE));
+  run("report", "-q", join(out, "verdict"), "-o", join(out, "verdict.html"));
   run("report", "-q", "--stress", join(out, "stress.json"), "--stress", join(out, "later.json"), "-o", join(out, "stress.html"));
-  return { files: `file://${resolve(out, "files.html")}`, filesTwo: `file://${resolve(out, "files-two.html")}`, models: `file://${resolve(out, "models.html")}`, folder: models, sweep: `file://${resolve(out, "sweep", "sweep.html")}`, obstacles: `file://${resolve(out, "obstacles.html")}`, stress: `file://${resolve(out, "stress.html")}`, two: `file://${resolve(out, "two.html")}`, one: `file://${resolve(out, "one.html")}`, runs };
+  return { verdict: `file://${resolve(out, "verdict.html")}`, files: `file://${resolve(out, "files.html")}`, filesTwo: `file://${resolve(out, "files-two.html")}`, models: `file://${resolve(out, "models.html")}`, folder: models, sweep: `file://${resolve(out, "sweep", "sweep.html")}`, obstacles: `file://${resolve(out, "obstacles.html")}`, stress: `file://${resolve(out, "stress.html")}`, two: `file://${resolve(out, "two.html")}`, one: `file://${resolve(out, "one.html")}`, runs };
 }
 
 // Different colours in each canvas, read right after it was drawn: 1 is an empty one.
@@ -474,6 +494,21 @@ function historyOf(folder, model) {
   return lines.map((line) => Object.fromEntries(line.split(",").map((text, k) => [names[k], Number(text)])));
 }
 
+const verdictTests = {
+  async "a verdict tells its grades, what decided them, and every figure"(page) {
+    assert.equal(await page.eval("document.title"), "What the models are fit for · tetlap");
+    const textsOf = (query) => page.eval(`[...document.querySelectorAll(${JSON.stringify(query)})].map((one) => one.textContent)`);
+    assert.deepEqual(await textsOf("#verdict .grade b"), ["yes", "no", "no", "yes", "no", "yes"]);
+    assert.deepEqual((await textsOf("#verdict .reason")).slice(0, 2), ["not measured: error of nodal forces on unseen bodies, at most 0.01 is asked", "edge: 4.76 steps over those of clip, at most 1.5 is asked"]);
+    assert.deepEqual(await textsOf("#verdict [data-met=false]"), ["–", "–", "4.76edge"]);
+    assert.ok((await textsOf("#verdict tbody th")).includes("Paper's pairs right"));
+    const rows = await textsOf("#verdict tr");
+    assert.ok(rows.includes("Classes that could not be asked22"), rows.join("\n"));
+    assert.ok(rows.some((row) => row.startsWith("edge<edges> crossminepassed through100\u2009%4.76\u2009%")), rows.join("\n"));
+    assert.deepEqual(await textsOf("#verdict .outcome"), ["passed through", "finished"]);
+  },
+};
+
 const compareTests = {
   async "all models of a comparison are shown, and it opens where their forces differ most"(page, { folder }) {
     assert.deepEqual(await page.eval("tetlap.stage.views.map((view) => view.run.label)"), ["clip", "geo", "clip32"]);
@@ -756,6 +791,12 @@ try {
     await attempt("no complaint after all of it", () => assert.deepEqual(table.problems, []));
     await table.close();
   }
+  const verdict = await browser.open(pages.verdict, { width: 1280, height: 900 });
+  for (const [name, test] of Object.entries(verdictTests)) await attempt(name, () => test(verdict));
+  await attempt("no complaint after all of it", () => assert.deepEqual(verdict.problems, []));
+  await verdict.close();
+  for (const [width, theme] of [[1280, "light"], [400, "dark"]])
+    await attempt(`a verdict fits ${width} pixels, ${theme}`, () => shoot(browser, pages.verdict, `verdict-${theme}-${width}`, { width, height: 1000, theme, isMobile: width < 600 }, "0"));
   await attempt("a run that failed looks so", () => testFailed(browser, pages.runs));
   await attempt("a page follows a run from before it begins to its end", () => testLive(browser));
   const models = await browser.open(pages.models, { width: 1280, height: 900 });

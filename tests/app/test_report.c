@@ -512,6 +512,31 @@ START_TEST(a_comparison_of_another_format_is_refused) {
 }
 END_TEST
 
+static void refuse_verdict(const char *text, bool is_alone, Status status, const char *message) {
+  AppReport report = {0};
+  write_text("verdict.json", text);
+  ck_assert_int_eq(app_report_collect(&report, directory, is_alone, 0), status);
+  ck_assert_msg(strstr(status_message(), message) != NULL, "%s", status_message());
+  app_report_destroy(&report);
+}
+
+START_TEST(a_verdict_has_a_page_of_its_own) {
+  AppReport report = {0};
+  static const char verdict[] = "{\"format\": 1, \"models\": [{\"model\": \"mine\"}]}";
+  refuse_verdict(verdict, false, STATUS_USAGE, "holds a verdict, which has a page of its own; give it alone");
+  refuse_verdict("{\"format\": 1, \"models\": []}", true, STATUS_INPUT, "verdict.json: judges no model yet");
+  refuse_verdict("{\"format\": 9}", true, STATUS_INPUT, "verdict.json: is of format 9");
+  refuse_verdict("{\n\"format\": x}", true, STATUS_INPUT, "verdict.json:2:");
+  write_text("verdict.json", verdict);
+  ck_assert_ok(app_report_collect(&report, directory, true, 0));
+  ck_assert_int_eq(report.run_count, 0);
+  char *page = write_page(&report);
+  ck_assert_ptr_nonnull(strstr(page, "\"verdict\":{\"format\":1,\"models\":[{\"model\":\"mine\"}]}"));
+  memory_free(page);
+  app_report_destroy(&report);
+}
+END_TEST
+
 START_TEST(broken_json_is_told_with_its_line) {
   AppReportRun run;
   write_text("summary.json", "{\n  \"title\": oops\n}\n");
@@ -586,6 +611,7 @@ int main(void) {
   tcase_add_test(test_case, frames_of_another_mesh_are_refused);
   tcase_add_test(test_case, a_folder_of_another_format_is_refused_with_the_program_that_reads_it);
   tcase_add_test(test_case, a_comparison_of_another_format_is_refused);
+  tcase_add_test(test_case, a_verdict_has_a_page_of_its_own);
   tcase_add_test(test_case, runs_of_networks_of_one_base_name_are_told_apart);
   tcase_add_test(test_case, broken_json_is_told_with_its_line);
   tcase_add_test(test_case, a_page_is_written_whole_or_not_at_all);

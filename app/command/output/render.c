@@ -115,6 +115,9 @@ static Status render(const Options *options) {
   Status status = STATUS_OK;
   for (int k = 0; !status && k < options->directory_count; k++)
     status = app_report_collect(&report, options->directories[k], options->directory_count == 1, 0);
+  if (!status && report.verdict)
+    status = status_fail(STATUS_INPUT, "%s: has verdicts; give one of the runs in it, as MODEL/SCENE/MODEL",
+                         options->directories[0]);
   if (!status) status = app_render(&report, &options->render);
   app_report_destroy(&report);
   if (!status && options->render.picture) log_info("wrote %s", options->render.picture);

@@ -86,15 +86,19 @@ static bool is_page(const char *path) {
   return dot && (strcmp(dot, ".html") == 0 || strcmp(dot, ".htm") == 0);
 }
 
-// Whether a page there would take the place of what a run wrote, or of its scene.
-static bool is_of_run(const AppReportRun *run, const char *output) {
+// Whether it is a file in the folder that is no page.
+static bool is_in(const char *directory, const char *output) {
   char folder[PATH_MAX];
   struct stat info;
   if (stat(output, &info) != 0 || !S_ISREG(info.st_mode)) return false;
-  const char *scene = record_find_text(run->summary, "scene");
-  if (scene && file_is_same(scene, output)) return true;
   find_folder(output, folder);
-  return !is_page(output) && folder[0] && file_is_same(folder, run->directory);
+  return !is_page(output) && folder[0] && file_is_same(folder, directory);
+}
+
+// Whether a page there would take the place of what a run wrote, or of its scene.
+static bool is_of_run(const AppReportRun *run, const char *output) {
+  const char *scene = record_find_text(run->summary, "scene");
+  return (scene && file_is_same(scene, output)) || is_in(run->directory, output);
 }
 
 static bool is_input(const Options *options, const char *output) {
@@ -107,7 +111,8 @@ static bool is_input(const Options *options, const char *output) {
 
 static Status check_output(const AppReport *report, const Options *options) {
   if (!options->output) return STATUS_OK;
-  bool is_taken = is_input(options, options->output);
+  bool is_taken = is_input(options, options->output) ||
+                  (report->verdict && is_in(options->directories[0], options->output));
   for (int r = 0; r < report->run_count; r++)
     is_taken = is_taken || is_of_run(&report->runs[r], options->output);
   if (!is_taken) return STATUS_OK;
@@ -133,7 +138,7 @@ static Status write_page(AppReport *report, const Options *options) {
 static void check(struct argp_state *state, void *given) {
   const Options *options = given;
   if (options->directory_count + options->bench_count + options->stress_count == 0 && !options->pareto)
-    argp_error(state, "name the directory of a run, of two runs or of a comparison");
+    argp_error(state, "name the directory of a run, of two runs, of a comparison or of a verdict");
 }
 
 static int run_command(int argument_count, char **arguments) {
@@ -159,7 +164,8 @@ const AppCommand app_command_report = {
     .doc = "Write a web page about a run, or about several side by side: the scene in motion, its plots, "
            "where the "
            "time went.\vDIR is where `tetlap run` wrote, or `tetlap compare` (then all its models are "
-           "shown). The "
+           "shown) or "
+           "`tetlap verdict`. The "
            "first is the one that the others are held against. The page is one file and needs no network.",
     .check = check,
     .run = run_command};

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "app/verdict/grade.h"
+#include "base/memory.h"
 #include "suite.h"
 
 // Just fit for everything: each figure at its bound.
@@ -88,6 +89,67 @@ START_TEST(what_was_not_measured_is_not_met) {
 }
 END_TEST
 
+// The row of a use's conditions that begins so; NULL: there is none.
+static const Record *row_of(const Record *root, const char *what) {
+  const Record *rows = record_find(root, "rows");
+  for (int r = 0; r < record_count(rows); r++)
+    if (strstr(record_find_text(record_at(rows, r), "what"), what) != NULL) return record_at(rows, r);
+  return NULL;
+}
+
+static Record *conditions_of(const AppVerdictFindings *findings, AppVerdictUse use) {
+  Record *root = record_new();
+  app_verdict_grade_record(findings, use, record_list(root, "rows"));
+  return root;
+}
+
+static bool is_told_met(const Record *row) {
+  char *text = record_text_of(row);
+  const bool is_met = strstr(text, "\"met\": true") != NULL;
+  ck_assert_msg(is_met != (strstr(text, "\"met\": false") != NULL), "%s", text);
+  memory_free(text);
+  return is_met;
+}
+
+static void expect_row(const Record *root, const char *what, double value, bool is_met, const char *scene) {
+  const Record *row = row_of(root, what);
+  ck_assert_msg(row != NULL, "%s", what);
+  const double found = record_find_number(row, "value");
+  const char *where = record_find_text(row, "scene");
+  ck_assert_msg(found == value || (isnan(found) && isnan(value)), "%s: %g", what, found);
+  ck_assert_msg(is_told_met(row) == is_met, "%s", what);
+  ck_assert_msg(scene ? where && strcmp(where, scene) == 0 : !where, "%s: %s", what, where ? where : "");
+}
+
+START_TEST(conditions_are_told_with_the_worst_scene) {
+  AppVerdictFindings findings = at_the_bounds();
+  findings.runs[0].share_reached = .5, findings.runs[0].nodal_error = NAN;
+  findings.runs[1].steps = 4;
+  snprintf(findings.runs[0].outcome, sizeof findings.runs[0].outcome, "failed");
+  Record *detect = conditions_of(&findings, APP_VERDICT_DETECT);
+  Record *forces = conditions_of(&findings, APP_VERDICT_FORCES);
+  Record *motion = conditions_of(&findings, APP_VERDICT_MOTION);
+  ck_assert_int_eq(record_count(record_find(detect, "rows")), 3);
+  expect_row(detect, "of disjoint pairs", .99, true, NULL);
+  expect_row(forces, "error of nodal forces on unseen", .01, true, NULL);
+  expect_row(forces, "error of total forces on unseen", .01, true, NULL);
+  ck_assert_int_eq(record_count(record_find(forces, "rows")), 6);
+  const Record *last = record_at(record_find(forces, "rows"), 4);
+  ck_assert_str_eq(record_find_text(last, "scene"), "press"); // not measured is worst
+  ck_assert(!is_told_met(last));
+  expect_row(motion, "of the time reached", .5, false, "press");
+  expect_row(motion, "steps over", 4, false, "drop");
+  expect_row(motion, "of the impulses missing", 1e-3, true, "drop"); // the other scene is static
+  expect_row(motion, "of the scenes' runs finished", .5, false, NULL);
+  record_destroy(detect), record_destroy(forces), record_destroy(motion);
+  findings.run_count = 0;
+  motion = conditions_of(&findings, APP_VERDICT_MOTION);
+  expect_row(motion, "of the scenes' runs finished", NAN, false, NULL);
+  ck_assert_ptr_null(row_of(motion, "steps over"));
+  record_destroy(motion);
+}
+END_TEST
+
 START_TEST(quick_leaves_half_of_the_scenes_out) {
   AppVerdictPlan plan = {.directory = "out", .source = "clip", .name = "clip", .seed = 7, .threads = 1};
   AppVerdictTask task;
@@ -111,6 +173,7 @@ int main(void) {
   tcase_add_test(cases, one_figure_beyond_its_bound_is_named);
   tcase_add_test(cases, a_run_that_did_not_finish_drives_no_motion);
   tcase_add_test(cases, what_was_not_measured_is_not_met);
+  tcase_add_test(cases, conditions_are_told_with_the_worst_scene);
   tcase_add_test(cases, quick_leaves_half_of_the_scenes_out);
   return suite_run("model_verdict", cases, 60);
 }
