@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/vec3.h"
+#include "fem/model/limits.h"
 #include "fem/scene/drive.h"
 
 enum { SAMPLES = 129 }; // of a motion or a load's factor in time
@@ -31,6 +32,35 @@ static double travel_of(const FemModel *model, const FemConstraintDef *def, cons
   return farthest;
 }
 
+// Of a body's driven vertices, at rest.
+typedef struct Driven {
+  int count;
+  Vec3 low, high, sum;
+} Driven;
+
+static void add_driven(Driven *driven, const double rest[3]) {
+  Vec3 x = vec3_at(rest);
+  if (driven->count++ == 0) driven->low = driven->high = x;
+  driven->low = (Vec3){fmin(driven->low.x, x.x), fmin(driven->low.y, x.y), fmin(driven->low.z, x.z)};
+  driven->high = (Vec3){fmax(driven->high.x, x.x), fmax(driven->high.y, x.y), fmax(driven->high.z, x.z)};
+  driven->sum = vec3_add(driven->sum, x);
+}
+
+// The point of the axis next to their mean moves as little as any; INFINITY: it is outside the box round
+// them.
+static double travel_of_axis(const FemModel *model, const FemConstraintDef *def, const Driven *driven) {
+  Vec3 centre = vec3_at(def->centre), axis = vec3_at(def->axis);
+  if (!(def->spin != 0 || def->turns) || driven->count == 0) return INFINITY;
+  Vec3 arm = vec3_sub(vec3_scale(1.0 / driven->count, driven->sum), centre);
+  Vec3 foot = vec3_add(centre, vec3_scale(vec3_dot(axis, arm) / vec3_dot(axis, axis), axis));
+  double point[3] = {foot.x, foot.y, foot.z}, low[3], high[3];
+  vec3_store(low, driven->low), vec3_store(high, driven->high);
+  double slack = FEM_ROUNDING * vec3_length(vec3_sub(driven->high, driven->low));
+  for (int c = 0; c < 3; c++)
+    if (!(point[c] >= low[c] - slack && point[c] <= high[c] + slack)) return INFINITY;
+  return travel_of(model, def, point);
+}
+
 static const FemObstacleDef *shape_of(const FemModel *model, int party) {
   int number = model->body_count;
   for (int o = 0; o < model->scene->obstacle_count; o++)
@@ -47,11 +77,14 @@ double fem_patch_travel(const FemModel *model, int party) {
   for (int d = 0; d < model->driver_count; d++) {
     const FemModelDriver *driver = &model->drivers[d];
     double least = INFINITY;
+    Driven driven = {0};
     for (int i = 0; i < driver->dof_count; i++) {
       int vertex = driver->dofs[i] / 3;
       if (vertex < body->vertex_begin || vertex >= body->vertex_end) break;
       least = fmin(least, travel_of(model, driver->def, model->rest + 3 * (size_t)vertex));
+      add_driven(&driven, model->rest + 3 * (size_t)vertex);
     }
+    least = fmin(least, travel_of_axis(model, driver->def, &driven));
     if (least < INFINITY) farthest = fmax(farthest, least);
   }
   return farthest;

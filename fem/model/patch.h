@@ -13,12 +13,12 @@
 
 #include "fem/model/model.h"
 
-// How far the party (bodies, then obstacles without elements) is moved by what drives it, at most [m]; of
-// driven vertices the one that moves least counts, so a turn about an axis moves nothing towards another
-// body.
+// How far the party (bodies, then obstacles without elements) is moved by what drives it, at most [m]. Of
+// driven vertices the one that moves least counts, or the point of the axis amid them: a turn about an axis
+// through them moves nothing towards another body.
 double fem_patch_travel(const FemModel *model, int party);
-// The largest resultant of the loads on a body (a torque has none; a following pressure as at rest), its weight included in a static scene; 0:
-// an obstacle [N].
+// The largest resultant of the loads on a body (a torque has none; a following pressure as at rest), its
+// weight included in a static scene; 0: an obstacle [N].
 double fem_patch_load(const FemModel *model, int party);
 
 // a of two that curve by `curvature` > 0 [1/m]; `modulus`: E* [Pa]. The largest of those that δ, F and W

@@ -120,6 +120,24 @@ START_TEST(a_short_peak_of_a_table_is_seen) {
 }
 END_TEST
 
+// Balls are pressed together by 5 mm, then turned on each other: no vertex lies on the axis. One that turns
+// about an axis beside it moves.
+START_TEST(a_turn_about_an_axis_amid_what_is_driven_is_no_approach) {
+  static const char *const BESIDE[] = {"bodies.upper.driven[0].turn.axis=[0, 1, 0]",
+                                       "bodies.upper.driven[0].turn.centre=[3, 0, 0]", NULL};
+  for (int k = 0; k < 2; k++) {
+    SceneRun run;
+    scene_open(&run, "../../examples/validation/torsion", k ? BESIDE : NULL);
+    double travel = fem_patch_travel(&run.model, 1);
+    if (k)
+      ck_assert_double_gt(travel, 0.04);
+    else
+      ck_assert_near(travel, 0.005, 1e-12);
+    scene_close(&run);
+  }
+}
+END_TEST
+
 // A shaft beside its hole, not in it: nothing lies in a hollow.
 START_TEST(a_shaft_beside_a_hole_of_its_radius_lies_in_no_hollow) {
   SceneRun run;
@@ -238,6 +256,7 @@ int main(void) {
   tcase_add_test(tests, a_pressure_tells_its_patch_whether_it_follows_or_not);
   tcase_add_test(tests, a_motion_with_a_short_period_is_seen);
   tcase_add_test(tests, a_short_peak_of_a_table_is_seen);
+  tcase_add_test(tests, a_turn_about_an_axis_amid_what_is_driven_is_no_approach);
   tcase_add_test(tests, a_shaft_beside_a_hole_of_its_radius_lies_in_no_hollow);
   tcase_add_test(tests, the_choice_knows_no_lengths_and_no_directions);
   tcase_add_test(tests, leaves_that_bend_together_are_no_stiffer_than_their_elements);
