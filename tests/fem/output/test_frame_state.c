@@ -2,6 +2,7 @@
 // A frame is a state of the motion: forces made anew from its positions, its velocities and the accepted
 // state before it are those that it holds. Frames are few against steps, so all of them lie within steps.
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -190,6 +191,7 @@ static void replay_run(SceneRun *run, Replay *replay, const char *scene, const c
   scene_open(run, scene, overrides);
   replay_create(replay, &run->model);
   FemRunOptions options = {.directory = folder, .observe = follow, .observer = replay};
+  omp_set_num_threads(1); // frames are then there at once
   ck_assert_ok(fem_run(&run->model, &options, &run->result));
   ck_assert_int_eq(replay->next_frame, run->scene.frames + 1);
 }
