@@ -29,7 +29,7 @@ typedef struct FemGradient {
   double *derivatives; // dg/dp, owned                       (goal_count, parameter_count)
 } FemGradient;
 
-// Whether it remembers what has been: fem/gradient/path.h goes back through that.
+// Whether it remembers what has been: fem/gradient/path/path.h goes back through that.
 bool fem_gradient_has_friction(const FemModel *model);
 
 // STATUS_INPUT: what cannot be differentiated in this scene; the message says what and why.

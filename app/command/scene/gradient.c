@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/gradient/path.h"
+#include "fem/gradient/path/path.h"
 
 #include <math.h>
 #include <stdio.h>

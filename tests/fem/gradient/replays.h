@@ -5,7 +5,7 @@
 
 #include "app/gradient/goal.h"
 #include "app/gradient/parameter.h"
-#include "fem/gradient/path.h"
+#include "fem/gradient/path/path.h"
 #include "static_solve.h"
 
 enum { MOST = 16 };

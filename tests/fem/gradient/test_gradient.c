@@ -4,7 +4,7 @@
 
 #include "app/gradient/goal.h"
 #include "app/gradient/parameter.h"
-#include "fem/gradient/krylov.h"
+#include "fem/gradient/path/krylov.h"
 #include "folder.h"
 #include "static_solve.h"
 

@@ -7,11 +7,11 @@
 // a static scene from equilibrium to equilibrium (c = a₁ = a₂ = 0). The replay differs from the run by the
 // error of its steps. The matrices of friction and of damping are not exact, so where there is one of them
 // Newton's method solves its systems by GMRES on differences of forces.
-#ifndef TETLAP_FEM_GRADIENT_REPLAY_H
-#define TETLAP_FEM_GRADIENT_REPLAY_H
+#ifndef TETLAP_FEM_GRADIENT_PATH_REPLAY_H
+#define TETLAP_FEM_GRADIENT_PATH_REPLAY_H
 
 #include "fem/effect/system.h"
-#include "fem/gradient/krylov.h"
+#include "fem/gradient/path/krylov.h"
 #include "fem/statics/equilibrium.h"
 
 // The ends of a run's steps, from 0 on.

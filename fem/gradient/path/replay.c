@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/gradient/replay.h"
+#include "fem/gradient/path/replay.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Derivatives dg/dp at the end of a path of steps, where the last state alone does not tell them: of a
-// motion, of a static scene with friction. They are those of a replay (fem/gradient/replay.h), by
+// motion, of a static scene with friction. They are those of a replay (fem/gradient/path/replay.h), by
 // its discrete adjoint. Backwards, with λ = −β, s_n = M (a₁ β_{n+1} + a₂ β_{n+2}), whose coefficients are
 // those of steps n + 1, n + 2, J = −∂f/∂u, D = −∂f/∂v, which is symmetric, and q what friction remembers
 // after a step (contact/friction/stick_pull.h):
@@ -15,11 +15,11 @@
 // exactly, by GMRES with the factor of the matrix (fem/gradient/damping.h). How the steps themselves depend
 // on p is left out, as it is in every derivative of a run. A vertex that changes between sticking and
 // slipping within a step makes g one-sided there.
-#ifndef TETLAP_FEM_GRADIENT_PATH_H
-#define TETLAP_FEM_GRADIENT_PATH_H
+#ifndef TETLAP_FEM_GRADIENT_PATH_PATH_H
+#define TETLAP_FEM_GRADIENT_PATH_PATH_H
 
 #include "fem/gradient/gradient.h"
-#include "fem/gradient/replay.h"
+#include "fem/gradient/path/replay.h"
 
 // STATUS_INPUT: what cannot be differentiated in this scene; the message says what and why.
 Status fem_path_check(const FemModel *model, const FemGradientDef *def);
