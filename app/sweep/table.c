@@ -137,25 +137,27 @@ static void record_axes(const AppSweepGrid *grid, Record *record) {
   }
 }
 
-// The observed order of the last contact force along the first axis with three values up to this point's;
-// NaN: there is none.
+// The first axis with three values, along which orders are observed; -1: there is none.
+static int order_axis(const AppSweepBase *base) {
+  for (int a = 0; a < base->axis_count; a++)
+    if (!base->axes[a].is_linked && base->axes[a].value_count >= 3) return a;
+  return -1;
+}
+
+// The observed order of the last contact force along that axis up to this point's value; NaN: there is none.
 static double order_of(const AppSweepGrid *grid, int p) {
   const AppSweepBase *base = &grid->base;
-  int stride = app_sweep_point_count(base) / base->repeat_count;
-  for (int a = 0; a < base->axis_count; a++) {
-    const AppSweepAxis *axis = &base->axes[a];
-    if (axis->is_linked) continue;
-    stride /= axis->value_count;
-    int k = grid->points[p].values[a];
-    if (axis->value_count < 3) continue;
-    if (k < 2) return NAN;
-    const char *const values[3] = {axis->values[k - 2], axis->values[k - 1], axis->values[k]};
-    double force[3];
-    for (int i = 0; i < 3; i++)
-      force[i] = record_find_number(grid->points[p - (2 - i) * stride].summary, "contact_force_last");
-    return app_sweep_order_observed(values, force);
-  }
-  return NAN;
+  int along = order_axis(base), stride = app_sweep_point_count(base) / base->repeat_count;
+  int k = along < 0 ? 0 : grid->points[p].values[along];
+  if (k < 2) return NAN;
+  for (int a = 0; a <= along; a++)
+    if (!base->axes[a].is_linked) stride /= base->axes[a].value_count;
+  char *const *texts = base->axes[along].values;
+  const char *const values[3] = {texts[k - 2], texts[k - 1], texts[k]};
+  double force[3];
+  for (int i = 0; i < 3; i++)
+    force[i] = record_find_number(grid->points[p - (2 - i) * stride].summary, "contact_force_last");
+  return app_sweep_order_observed(values, force);
 }
 
 static bool has_orders(const AppSweepGrid *grid) {
@@ -178,6 +180,8 @@ static void record_point(const AppSweepGrid *grid, const AppSweepPoint *point, R
   if (!point->summary) return;
   for (int c = 0; c < COLUMN_COUNT; c++)
     record_value(row, columns[c].name, record_find(section_of(point, &columns[c]), columns[c].key));
+  double order = order_of(grid, (int)(point - grid->points));
+  if (isfinite(order)) record_number(row, "order", order);
 }
 
 static void record_history(const AppSweepPoint *point, Record *row) {
@@ -197,6 +201,7 @@ static Record *make_record(const AppSweepGrid *grid, int count, int history_coun
   record_text(record, "command", app_versions_command());
   app_versions_record(record_child(record, "versions"));
   record_axes(grid, record);
+  if (has_orders(grid)) record_text(record, "order_along", grid->base.axes[order_axis(&grid->base)].key);
   RecordList *runs = record_list(record, "runs");
   for (int p = 0; p < count; p++) {
     Record *row = record_append(runs);

@@ -668,6 +668,17 @@ const sweepTests = {
     assert.equal(await page.eval(`document.querySelectorAll("#sweep-steps svg [aria-label=dot] path").length`), 3); // crosses
   },
 
+  async "the order of convergence stands at its dot, along the key that it was observed along"(page) {
+    const orders = () => page.eval(`[...document.querySelectorAll("#sweep-contact_force_last_N svg .order text")].map((one) => one.textContent)`);
+    const known = await page.eval("tetlap.data.sweep.runs.map((run) => run.order).filter(Number.isFinite)");
+    assert.equal(known.length, 1);
+    assert.deepEqual(await orders(), [`order ${known[0].toFixed(2)}`]);
+    const choose = (key) => page.eval(`(() => { const select = document.querySelector("#along"); select.value = "${key}"; select.dispatchEvent(new Event("change")); })()`);
+    await choose("bodies.upper.material.poisson");
+    assert.deepEqual(await orders(), []);
+    await choose("contact.stiffness");
+  },
+
   async "the axis is chosen, and the dots tell the table's numbers"(page) {
     const table = await page.eval("tetlap.data.sweep.runs.map((run) => run.steps).filter(Boolean)");
     const titles = () => page.eval(`[...document.querySelectorAll("#sweep-steps svg circle title")].map((one) => one.textContent)`);

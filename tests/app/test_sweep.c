@@ -153,6 +153,34 @@ static int lines_of(const char *text) {
   return lines;
 }
 
+// In its row: of the forces of three runs along the second key, which is the first with three values.
+START_TEST(the_files_hold_the_observed_order) {
+  static const char grid[] =
+      "-s time.end=0.15 -V bodies.upper.material.poisson=0.3,0.2 -V contact.stiffness=";
+  char options[160];
+  snprintf(options, sizeof options, "%s1e5,1e6,1e7", grid);
+  ck_assert_int_eq(sweep_scene(TETLAP_SOURCE_DIR "/examples/02_two_blocks.yaml", options), 0);
+  Record *table = read_table();
+  const Record *runs = record_find(table, "runs");
+  ck_assert_str_eq(record_find_text(table, "order_along"), "contact.stiffness");
+  const char *const values[] = {"1e5", "1e6", "1e7"};
+  double f[6];
+  for (int k = 0; k < 6; k++) f[k] = record_find_number(record_at(runs, k), "contact_force_last_N");
+  for (int k = 0; k < 6; k++) {
+    double order = record_find_number(record_at(runs, k), "order");
+    double expected = k % 3 == 2 ? app_sweep_order_observed(values, f + k - 2) : NAN;
+    ck_assert(isnan(expected) ? isnan(order) : fabs(order - expected) <= 1e-12 * fabs(expected));
+  }
+  ck_assert(isfinite(record_find_number(record_at(runs, 2), "order")));
+  record_destroy(table);
+  snprintf(options, sizeof options, "%s1e5,1e6", grid); // two values have none
+  ck_assert_int_eq(sweep_scene(TETLAP_SOURCE_DIR "/examples/02_two_blocks.yaml", options), 0);
+  table = read_table();
+  ck_assert_ptr_null(record_find_text(table, "order_along"));
+  record_destroy(table);
+}
+END_TEST
+
 // A value that a scene cannot have fails alone.
 START_TEST(runs_are_rows_and_one_that_fails_is_a_row_too) {
   const char *grid = "-s time.end=0.02 -V bodies[0].material.poisson=0.3,0.7 -V contact.stiffness=1e5,1e6";
@@ -486,6 +514,7 @@ int main(void) {
   tcase_add_test(cases, linked_keys_change_together);
   tcase_add_test(cases, cores_are_divided_among_runs);
   tcase_add_test(cases, the_observed_order_of_a_quadratic_error_is_two);
+  tcase_add_test(cases, the_files_hold_the_observed_order);
   tcase_add_test(cases, ranges_have_both_ends_and_lists_their_words);
   tcase_add_test(cases, an_axis_that_makes_no_sense_is_a_usage_error);
   tcase_add_test(cases, runs_are_rows_and_one_that_fails_is_a_row_too);

@@ -9,9 +9,13 @@ import { powerOf } from "./plots.js";
 
 const MARGIN = { left: 56, right: 16, top: 12, bottom: 42 };
 
+// The quantity of which three values in one ratio give an order of convergence.
+const ORDERED = "contact_force_last_N";
+
 // What is plotted, if any run has it: key, title, unit, logarithmic.
 const QUANTITIES = [
   ["contact_force_max_N", "Largest contact force", "N", false],
+  [ORDERED, "Contact force at the end, with its observed order", "N", false],
   ["deepest_overlap_max", "Deepest overlap of an element", "", true],
   ["energy_gain_relative", "Gain of energy, over the scene’s", "", true],
   ["steps", "Steps", "", true],
@@ -70,9 +74,18 @@ function tick(value) {
   return format(value, "", 3);
 }
 
+// The observed orders at their dots, beside the line that comes from the neighbour.
+function ordersOf(points, along, key, hue) {
+  return points.map((run, k) => {
+    const neighbour = points[k === 0 ? 1 : k - 1];
+    const dy = neighbour && run[key] < neighbour[key] ? 13 : -11;
+    return isNumber(run.order) ? Plot.text([run], { x: () => run.set[along], y: key, text: [`order ${run.order.toFixed(2)}`], fill: hue, dy, textAnchor: k === 0 ? "start" : "end", className: "order" }) : null;
+  });
+}
+
 class SweepPlot {
   constructor(sweep, [key, title, unit, isLog], choice, state) {
-    Object.assign(this, { sweep, key, title, unit, isLog, choice, state });
+    Object.assign(this, { sweep, key, title, unit, isLog, choice, state, isOrdered: key === ORDERED });
     this.area = h(".area");
     this.element = h("figure.plot", { id: `sweep-${key}` }, h("figcaption", h("h3", title, unit && h("span.unit", unit))), this.area);
     state.on(["theme"], () => this.draw());
@@ -107,6 +120,7 @@ class SweepPlot {
       marks: [
         ...known.map(({ points, hue }) => Plot.line(points, { x: (run) => (isNumeric ? run.set[along] : String(run.set[along])), y: key, stroke: hue, strokeWidth: 1.6 })),
         ...known.map(({ points, hue, label }) => Plot.dot(points, { x: (run) => (isNumeric ? run.set[along] : String(run.set[along])), y: key, fill: hue, r: 3.6, title: (run) => tell(run, label) })),
+        ...(this.isOrdered && along === sweep.orderAlong ? known.flatMap(({ points, hue }) => ordersOf(points, along, key, hue)) : []),
         Plot.dot(failed, { x: ({ run }) => (isNumeric ? run.set[along] : String(run.set[along])), frameAnchor: "bottom", symbol: "times", stroke: "currentColor", r: 5, strokeWidth: 1.6, title: ({ run, label }) => tell(run, label) }),
       ],
     });
@@ -195,11 +209,11 @@ function countsOf(runs) {
 export function buildSweep(given, state, createState) {
   const runs = given.runs ?? [];
   if (runs.length === 0) return null;
-  const sweep = { runs, keys: (given.axes ?? []).map((axis) => axis.key) };
+  const sweep = { runs, keys: (given.axes ?? []).map((axis) => axis.key), orderAlong: given.order_along };
   const longest = [...(given.axes ?? [])].sort((a, b) => b.values.length - a.values.length)[0];
   const choice = createState({ along: longest.key });
   const select = h("select", { id: "along", change: () => choice.set({ along: select.value }) }, sweep.keys.map((key) => h("option", { value: key, selected: key === choice.along }, key)));
-  const shown = QUANTITIES.filter(([key]) => runs.some((run) => isNumber(run[key]) && run[key] > 0));
+  const shown = QUANTITIES.filter(([key]) => runs.some((run) => isNumber(run[key]) && run[key] > 0) && (key !== ORDERED || sweep.orderAlong));
   return h(
     "section.block",
     { id: "sweep" },
