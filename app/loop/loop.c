@@ -43,8 +43,7 @@ static void read_contact(AppLoop *loop, const ContactInterface *interface, int i
   memcpy(contact->moment, loop->moments[i], sizeof contact->moment);
   memcpy(contact->centre, forces->centres[i], sizeof contact->centre);
   if (rubbing) normal = vec3_sub(normal, vec3_at(rubbing->force));
-  contact->area = forces->areas[i];
-  contact->pressure = contact->area > 0 ? vec3_length(normal) / contact->area : 0;
+  contact->normal = vec3_length(normal);
   contact->slip = NAN;
   if (rubbing && rubbing->stuck + rubbing->slides > 0)
     contact->slip = rubbing->slides / (rubbing->stuck + rubbing->slides);
@@ -74,8 +73,20 @@ static Status read_contacts(AppLoop *loop, double seconds) {
   return STATUS_OK;
 }
 
+Status app_loop_read_areas(AppLoop *loop) {
+  if (!contact_of(loop)) return STATUS_OK;
+  TRY(fem_forces_take_areas(&loop->forces, app_loop_state(loop)));
+  for (int i = 0; i < loop->contact_count; i++) {
+    AppLoopContact *contact = &loop->contacts[i];
+    contact->area = loop->forces.areas[i];
+    contact->pressure = contact->area > 0 ? contact->normal / contact->area : 0;
+  }
+  return STATUS_OK;
+}
+
 Status app_loop_read(AppLoop *loop) {
-  return read_contacts(loop, 0);
+  TRY(read_contacts(loop, 0));
+  return app_loop_read_areas(loop);
 }
 
 static Status create_contacts(AppLoop *loop) {
@@ -91,7 +102,7 @@ static Status create_contacts(AppLoop *loop) {
     loop->contacts[i].a = fem_effect_contact_name(effect, layout->interfaces[i].a);
     loop->contacts[i].b = fem_effect_contact_name(effect, layout->interfaces[i].b);
   }
-  return read_contacts(loop, 0);
+  return app_loop_read(loop);
 }
 
 // Of the run, after every step.
@@ -154,7 +165,8 @@ Status app_loop_advance(AppLoop *loop, double wanted) {
     TRY(app_loop_groups_begin(&loop->groups, app_loop_time(loop), until, &has_changed));
   if (has_changed) TRY(change(loop, false));
   TRY(fem_run_session_advance(loop->session, until));
-  if (app_loop_state(loop)->version != loop->version_read) TRY(app_loop_read(loop));
+  if (app_loop_state(loop)->version != loop->version_read) TRY(read_contacts(loop, 0));
+  TRY(app_loop_read_areas(loop));
   const bool is_stopped = fem_run_session_is_stopped(loop->session);
   return app_loop_diary_advance(&loop->diary, until, is_stopped ? app_loop_time(loop) : until);
 }

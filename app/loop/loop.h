@@ -15,6 +15,7 @@
 typedef struct AppLoopContact {
   const char *a, *b; // names, borrowed; the same: a body and itself
   double force[3];   // on a, friction and viscosity included; the opposite acts on b [N]
+  double normal;     // its length without friction [N]
   double moment[3];  // of it about the origin [N m]
   double centre[3];  // of pressure [m]; NaN: nothing presses
   double area;       // of contact [m²]
@@ -40,7 +41,7 @@ typedef struct AppLoop {
   long long readings;       // of contacts, so far: as long as it is the same, nothing has moved
   long long version_read;   // of the state that they are of; 0: none
   bool has_vertex_forces;   // `forces` has those of vertices at the present time
-  // After every step, at its state; a Status other than OK ends the advance with it. NULL: nobody is told.
+  // After every step, at its state, where contacts have no areas before app_loop_read_areas; a Status other than OK ends the advance with it. NULL: nobody is told.
   Status (*on_step)(void *self, struct AppLoop *loop);
   void *on_step_self;
 } AppLoop;
@@ -58,6 +59,8 @@ void app_loop_close(AppLoop *loop);
 double app_loop_time(const AppLoop *loop); // [s]
 // Reads the contacts at the present state, which has been evaluated anew without a step.
 Status app_loop_read(AppLoop *loop);
+// Of contacts that have been read, areas and pressures: surfaces are clipped for them. An advance ends so.
+Status app_loop_read_areas(AppLoop *loop);
 const FemState *app_loop_state(const AppLoop *loop);
 
 // Steps to `until` [s]; to the time itself: nothing. Fails as fem_run_session_advance.

@@ -242,6 +242,7 @@ static Status tell_step(void *self, AppLoop *loop) {
   char peeked;
   if (recv(server->socket, &peeked, 1, MSG_PEEK | MSG_DONTWAIT) == 0) server->is_alone = true;
   if (!server->is_alone && server->tells_steps) {
+    TRY(app_loop_read_areas(loop));
     show(server);
     bool goes_on = answer(server, STEP, "", 0);
     while (goes_on && (goes_on = receive_request(server, &go)) && go.what == FILL)

@@ -174,6 +174,7 @@ static Status estimate(const ContactLayout *layout, const ContactEvaluation *eva
   found->estimated = found->pressed;
   found->energy = energy_of(layout, evaluation, patch);
   found->edge = mean_edge(layout, &evaluation->patches, patch);
+  found->area = contact_area_find(layout, evaluation, patch);
   return find_rim(layout, evaluation, patch, &found->rim);
 }
 
@@ -197,8 +198,6 @@ Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, const Con
       find_way(accuracy, model, state->positions, &layout->interfaces[patch->interface], energy, elastic,
                found);
     if (found->pressed > GROWN * found->estimated) TRY(estimate(layout, evaluation, patch, found));
-    if (found->pressed > accuracy->pairs[patch->interface].pressed)
-      found->area = contact_area_find(layout, evaluation, patch);
     accuracy->places[accuracy->found_count++] = patch->interface;
   }
   return STATUS_OK;

@@ -85,13 +85,11 @@ void fem_forces_destroy(FemForces *forces) {
   *forces = (FemForces){0};
 }
 
-static void take_interfaces(FemForces *forces, const ContactEvaluation *evaluation) {
-  const ContactInterface *interfaces = evaluation->interfaces;
+static void take_interfaces(FemForces *forces, const ContactInterface *interfaces) {
   for (int i = 0; i < forces->interface_count; i++) {
     vec3_store(forces->interfaces[i], vec3_at(interfaces[i].force));
     vec3_store(forces->centres[i], vec3_at(interfaces[i].centre));
   }
-  contact_system_areas(contact_of(forces->system), evaluation, forces->areas);
 }
 
 static Status take_friction(FemForces *forces, const FemState *state) {
@@ -118,11 +116,18 @@ Status fem_forces_take(FemForces *forces, const FemState *state) {
   const ContactEvaluation *evaluation;
   TRY(fem_effect_contact_evaluate(system, state, &evaluation));
   if (!evaluation) return STATUS_OK;
-  take_interfaces(forces, evaluation);
+  take_interfaces(forces, evaluation->interfaces);
   if (forces->contact)
     memcpy(forces->contact, evaluation->given_forces, values_of(forces) * sizeof *forces->contact);
   TRY(take_friction(forces, state));
   if (viscosity) TRY(fem_effect_viscosity_add(viscosity, state, forces->interfaces, forces->contact));
+  return STATUS_OK;
+}
+
+Status fem_forces_take_areas(FemForces *forces, const FemState *state) {
+  const ContactEvaluation *evaluation;
+  TRY(fem_effect_contact_evaluate(forces->system, state, &evaluation));
+  if (evaluation) contact_system_areas(contact_of(forces->system), evaluation, forces->areas);
   return STATUS_OK;
 }
 

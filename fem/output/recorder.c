@@ -419,6 +419,7 @@ static Status fill_row(FemRecorder *recorder, FemColumnSource source) {
   const FemSceneDef *scene = recorder->system->model->scene;
   for (int b = 0; b < scene->body_count && !scene->is_static; b++, row += 3)
     fem_momentum_missing(&recorder->ledger.momentum, source.state->time, b, row);
+  TRY(fem_forces_take_areas(&recorder->forces, source.state));
   for (int i = 0; i < count; i++, row += 4) {
     row[0] = recorder->forces.areas[i];
     vec3_store(row + 1, vec3_at(recorder->forces.centres[i]));

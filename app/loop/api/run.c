@@ -63,6 +63,7 @@ static Status check_given(const void *given, const char *what) {
 static Status tell_step(void *self, AppLoop *loop) {
   TetlapRun *run = self;
   if (!run->options.on_step) return STATUS_OK;
+  TRY(app_loop_read_areas(loop));
   run->teller = pthread_self();
   atomic_store(&run->tells, true);
   if (run->options.on_step(run->options.user, run)) app_loop_stop(loop);
