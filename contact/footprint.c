@@ -35,8 +35,7 @@ size_t contact_footprint_near(const ContactNear *near) {
 }
 
 size_t contact_footprint_rest(const ContactRest *rest) {
-  return HELD(rest->is_resting, rest->is_near, rest->forces, rest->covered, rest->interfaces,
-              rest->areas);
+  return HELD(rest->is_resting, rest->is_near, rest->forces, rest->covered, rest->interfaces, rest->areas);
 }
 
 static size_t of_patches(const ContactPatches *patches) {

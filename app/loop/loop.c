@@ -67,20 +67,21 @@ static Status read_contacts(AppLoop *loop, double seconds) {
   loop->readings++;
   loop->version_read = 0;
   loop->forces_time = state->time;
-  loop->has_vertex_forces = false;
+  loop->has_vertex_forces = loop->has_areas = false;
   TRY(take_contacts(loop, state, seconds));
   loop->version_read = state->version;
   return STATUS_OK;
 }
 
 Status app_loop_read_areas(AppLoop *loop) {
-  if (!contact_of(loop)) return STATUS_OK;
+  if (!contact_of(loop) || loop->has_areas) return STATUS_OK;
   TRY(fem_forces_take_areas(&loop->forces, app_loop_state(loop)));
   for (int i = 0; i < loop->contact_count; i++) {
     AppLoopContact *contact = &loop->contacts[i];
     contact->area = loop->forces.areas[i];
     contact->pressure = contact->area > 0 ? contact->normal / contact->area : 0;
   }
+  loop->has_areas = true;
   return STATUS_OK;
 }
 

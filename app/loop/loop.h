@@ -41,7 +41,9 @@ typedef struct AppLoop {
   long long readings;       // of contacts, so far: as long as it is the same, nothing has moved
   long long version_read;   // of the state that they are of; 0: none
   bool has_vertex_forces;   // `forces` has those of vertices at the present time
-  // After every step, at its state, where contacts have no areas before app_loop_read_areas; a Status other than OK ends the advance with it. NULL: nobody is told.
+  bool has_areas;           // so have `contacts`
+  // After every step, at its state; contacts have areas once app_loop_read_areas is called. A Status other
+  // than OK ends the advance with it. NULL: nobody is told.
   Status (*on_step)(void *self, struct AppLoop *loop);
   void *on_step_self;
 } AppLoop;

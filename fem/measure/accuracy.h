@@ -33,8 +33,8 @@
 #include "fem/effect/system.h"
 
 // Of one interface, at its largest P so far; the area, and what stands below `estimated`, at a P that is
-// smaller by a hundredth at most. `give` is taken at the state in which most energy is stored while the two touch: an
-// impact compresses the interface before the body behind it. Numbers only, for checkpoints.
+// smaller by a hundredth at most. `give` is taken at the state in which most energy is stored while the two
+// touch: an impact compresses the interface before the body behind it. Numbers only, for checkpoints.
 typedef struct FemAccuracyPair {
   double force;      // the largest resultant [N]
   double force_time; // [s]

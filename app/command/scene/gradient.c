@@ -30,7 +30,8 @@ static const AppOption option_table[] = {
      1, CLI_REPEATED, CLI_TO(Options, of), .most = MAX_GOALS, .example = "--of",
      .count_offset = offsetof(Options, of_count)},
     {"by", 0, "KEY,...",
-     "By these keys of the scene: materials, damping, loads, motions, places, contact.stiffness, contact.friction, "
+     "By these keys of the scene: materials, damping, loads, motions, places, contact.stiffness, "
+     "contact.friction, "
      "effects.gravity[K]; "
      "docs/gradients.md lists them",
      1, CLI_LIST, CLI_TO(Options, by), .most = MAX_PARAMETERS, .example = "contact.stiffness",

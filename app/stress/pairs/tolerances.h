@@ -14,9 +14,10 @@ typedef struct AppStressPairErrors {
   double order;    // V of the tetrahedra and vertices in another order
   double motion;   // V after a rigid motion and after scaling
   double parts;    // V of the parts of one tetrahedron, summed
-  double gradient; // ∇V against central differences, by the extent squared, and the pull-back of x̄; smooth classes only
-  double flags;    // share of pairs whose flags contradict the numbers or miss a flat tetrahedron
-  double missed;   // share of pairs with V above 1e-9 in common that get V = 0, and so ∇V = 0
+  double gradient; // ∇V against central differences, by the extent squared, and the pull-back of x̄; smooth
+                   // classes only
+  double flags;  // share of pairs whose flags contradict the numbers or miss a flat tetrahedron
+  double missed; // share of pairs with V above 1e-9 in common that get V = 0, and so ∇V = 0
 } AppStressPairErrors;
 
 typedef struct AppStressTolerance {
