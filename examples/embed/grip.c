@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two pads close on a soft cube until both press with 4 N, hold it, and lift it: examples/python/grip.py in
- * C. cc grip.c -o grip $(pkg-config --cflags --libs tetlap-run)
+/* Two pads close on a soft cube until both press with 4 N, hold it, and lift it, as in examples/python/grip.py.
+ *   cc grip.c -o grip $(pkg-config --cflags --libs tetlap-run)
  *   ./grip ../python/gripper.yaml */
 #include <stdio.h>
 #include <stdlib.h>

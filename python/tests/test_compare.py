@@ -2,6 +2,8 @@
 """One scene with several overlap models, functions of this process among them."""
 
 import html
+import os
+import shutil
 import tempfile
 import unittest
 from pathlib import Path
@@ -49,6 +51,18 @@ class Compare(unittest.TestCase):
             self.assertGreater(got["same"].errors["audits"], 5)
             self.assertAlmostEqual(got["stiff"].errors["audit_volume_error"], 0.1, delta=1e-6)
             self.assertGreater(got["stiff"].errors["force_error_l2"], 1e-4)
+
+    def test_weights_files_of_one_base_name_are_on_its_page_too(self):
+        weights = Path(os.environ["TETLAP_SOURCE_DIR"], "net", "weights", "geo-small.safetensors")
+        with tempfile.TemporaryDirectory() as folder:
+            files = [Path(folder, name, "net.safetensors") for name in ("a", "b")]
+            for file in files:
+                file.parent.mkdir()
+                shutil.copy(weights, file)
+            got = tetlap.compare(SCENE, dict(zip("ab", files)), Path(folder, "out"), audit=0)
+            self.assertEqual([model.outcome for model in got.values()], ["finished"] * 2)
+            page = html.unescape(got._repr_html_().split("<iframe srcdoc=", 1)[1])
+            self.assertTrue('"a/net"' in page and '"b/net"' in page)
 
     def test_the_reference_can_be_any_of_them_and_folders_live_as_long_as_the_runs(self):
         got = tetlap.compare(SCENE, {"mine": clip, "clip": "clip"}, reference="clip", audit=0)

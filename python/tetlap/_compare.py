@@ -36,9 +36,10 @@ class Compared:
 class Comparison(dict):
     """The `Compared` of each model by its name; in a notebook a table of their errors, and the page of their runs side by side."""
 
+    _directory = None  # of the runs and compare.json
+
     def _repr_html_(self):
-        folders = [model.run.directory.parent for model in self.values() if model.run]
-        return self._errors_html() + (report_html(folders[0]) if folders else "")
+        return self._errors_html() + (report_html(self._directory) if self._directory else "")
 
     def _errors_html(self):
         wanted = ("force_error_l2", "trajectory_error", "audit_force_error", "audit_volume_error")
@@ -120,6 +121,7 @@ def compare(scene: Scene, models: Mapping[str, OverlapModel], directory: str | o
         for server in servers:
             server.hand_over()
     compared = Comparison()
+    compared._directory = directory
     for name, row in zip(models, rows):
         folder = Path(directory, row["model"])
         compared[name] = Compared(name, row, Run(folder, keeper) if folder.is_dir() else None)

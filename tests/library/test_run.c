@@ -26,6 +26,19 @@ static TetlapRun *open_hand(const TetlapRunOptions *options) {
   return run;
 }
 
+// One advance, which on_step ends after `expected` steps that it counts itself.
+static void advance_with(int (*on_step)(void *, TetlapRun *), int expected) {
+  int steps = 0;
+  TetlapRunOptions options = TETLAP_RUN_OPTIONS_INIT;
+  options.on_step = on_step, options.user = &steps;
+  TetlapRun *run = open_hand(&options);
+  ck_assert_int_eq(tetlap_run_advance(run, 0.2), 0);
+  ck_assert_int_eq(steps, expected);
+  ck_assert_double_lt(tetlap_run_time(run), 0.2);
+  ck_assert_int_eq(tetlap_run_advance(run, tetlap_run_time(run)), 0); // it can be used again
+  tetlap_run_close(run);
+}
+
 // Presses the plate down by 5 cm/s and pulls the block aside.
 static void press(TetlapRun *run, double until) {
   const double force[3] = {0.5, 0, 0};
@@ -78,14 +91,7 @@ static int stop_after(void *user, TetlapRun *run) {
 }
 
 START_TEST(a_callback_ends_the_advance) {
-  int steps = 0;
-  TetlapRunOptions options = TETLAP_RUN_OPTIONS_INIT;
-  options.on_step = stop_after, options.user = &steps;
-  TetlapRun *run = open_hand(&options);
-  ck_assert_int_eq(tetlap_run_advance(run, 0.2), 0);
-  ck_assert_int_eq(steps, 3);
-  ck_assert_double_lt(tetlap_run_time(run), 0.2);
-  tetlap_run_close(run);
+  advance_with(stop_after, 3);
 }
 END_TEST
 
@@ -112,14 +118,7 @@ static int meddle(void *user, TetlapRun *run) {
 }
 
 START_TEST(one_at_a_time_uses_a_run) {
-  int steps = 0;
-  TetlapRunOptions options = TETLAP_RUN_OPTIONS_INIT;
-  options.on_step = meddle, options.user = &steps;
-  TetlapRun *run = open_hand(&options);
-  ck_assert_int_eq(tetlap_run_advance(run, 0.2), 0);
-  ck_assert_int_eq(steps, 2);
-  ck_assert_int_eq(tetlap_run_advance(run, tetlap_run_time(run)), 0); // it can be used again
-  tetlap_run_close(run);
+  advance_with(meddle, 2);
 }
 END_TEST
 

@@ -275,9 +275,10 @@ static double stressed(const char *model) {
            model, folder, folder, folder);
   run_program(words, text);
   const char *name = strstr(text, "\"gradient\"");
-  const char *at = name ? strstr(name, "\"value\"") : NULL;
-  ck_assert_msg(at != NULL, "%s", text);
-  return strtod(strchr(at, ':') + 1, NULL);
+  const char *at = name ? strstr(name, "\"value\":") : NULL;
+  double worst;
+  ck_assert_msg(at && sscanf(at, "\"value\": %lf", &worst) == 1, "%s", text); // null is no number
+  return worst;
 }
 
 START_TEST(stress_holds_the_pull_back_of_centroids_to_differences) {
@@ -351,6 +352,28 @@ static bool has_numpy(void) {
   return has;
 }
 
+// V is `share` of what the bounding boxes have in common, x̄ its middle. Returns how many pairs have a V.
+static int check_boxes(int count, double x[][24], const double *v, double middles[][3], double share) {
+  int found = 0;
+  for (int i = 0; i < count; i++) {
+    double product = share;
+    if (v[i] == 0) continue;
+    found++;
+    for (int c = 0; c < 3; c++) {
+      double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+      for (int k = 0; k < 8; k++) {
+        low[k / 4] = fmin(low[k / 4], x[i][3 * k + c]);
+        high[k / 4] = fmax(high[k / 4], x[i][3 * k + c]);
+      }
+      double from = fmax(low[0], low[1]), to = fmin(high[0], high[1]);
+      product *= to - from;
+      ck_assert_double_eq(middles[i][c], (from + to) / 2);
+    }
+    ck_assert_near(v[i], product, 1e-15);
+  }
+  return found;
+}
+
 START_TEST(a_python_function_answers_with_all_that_it_has) {
   OverlapModel model;
   if (!has_numpy()) return;
@@ -358,21 +381,7 @@ START_TEST(a_python_function_answers_with_all_that_it_has) {
   ck_assert(overlap_model_has_own_centroid(&model) && !overlap_model_has_gradient(&model));
   OverlapBatch batch = batch_of(PAIRS, false, true);
   ck_assert_ok(overlap_model_eval(&model, &batch));
-  for (int i = 0; i < PAIRS; i++) {
-    double product = 1;
-    if (volume[i] == 0) continue;
-    for (int c = 0; c < 3; c++) {
-      double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-      for (int v = 0; v < 8; v++) {
-        low[v / 4] = fmin(low[v / 4], pairs[i][3 * v + c]);
-        high[v / 4] = fmax(high[v / 4], pairs[i][3 * v + c]);
-      }
-      double from = fmax(low[0], low[1]), to = fmin(high[0], high[1]);
-      product *= to - from;
-      ck_assert_double_eq(centroid[i][c], (from + to) / 2);
-    }
-    ck_assert_near(volume[i], product, 1e-15);
-  }
+  ck_assert_int_gt(check_boxes(PAIRS, pairs, volume, centroid, 1), PAIRS / 10);
   overlap_model_destroy(&model);
   static double logits[PAIRS], bounds[PAIRS];
   open_model(&model, PYTHON("with_all"));
@@ -397,24 +406,7 @@ START_TEST(a_command_answers_as_a_function_does) {
   for (int count = 10; count <= MANY; count *= 300) {
     OverlapBatch batch = {.pair_count = count, .pairs = x[0], .volume = v, .centroid = middles[0]};
     ck_assert_ok(overlap_model_eval(&model, &batch));
-    int shared = 0;
-    for (int i = 0; i < count; i++) {
-      double product = 1.0 / 6;
-      if (v[i] == 0) continue;
-      shared++;
-      for (int c = 0; c < 3; c++) {
-        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-        for (int k = 0; k < 8; k++) {
-          low[k / 4] = fmin(low[k / 4], x[i][3 * k + c]);
-          high[k / 4] = fmax(high[k / 4], x[i][3 * k + c]);
-        }
-        double from = fmax(low[0], low[1]), to = fmin(high[0], high[1]);
-        product *= to - from;
-        ck_assert_double_eq(middles[i][c], (from + to) / 2);
-      }
-      ck_assert_near(v[i], product, 1e-15);
-    }
-    ck_assert_int_gt(shared, 1);
+    ck_assert_int_gt(check_boxes(count, x, v, middles, 1.0 / 6), count / 10);
   }
   overlap_model_destroy(&model);
 }

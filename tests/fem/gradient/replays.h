@@ -13,7 +13,7 @@ enum { MOST = 16 };
 typedef struct Asked {
   const char *scene, *setting;
   const char *of[MOST], *by[MOST]; // ended by NULL
-  double tolerance;                // relative to g/p, or to dg/dp where that is more
+  double tolerance;                // relative to g/p, or to dg/dp where that is more; 0: 1e-6
   double step;                     // of the differences, relative; 0: 1e-4
   int least_steps;                 // of the run; 0: 20
   long long least_switches;        // between sticking and slipping
@@ -86,6 +86,7 @@ static inline void differ(const Asked *asked, const FemReplaySteps *steps, const
 // Relative to g/p, or to the derivative where that is more.
 static inline void check_against_replays(const Asked *asked) {
   static const double OF_ZERO = 1e-2;
+  const double tolerance = asked->tolerance > 0 ? asked->tolerance : 1e-6;
   FemReplaySteps steps;
   Answer answer;
   find_steps(asked, &steps);
@@ -101,7 +102,7 @@ static inline void check_against_replays(const Asked *asked) {
       double whole = fmax(fabs(answer.gradient.values[g]), fabs(found));
       ck_assert_double_le(answer.gradient.residuals[g], 1e-9);
       ck_assert_double_gt(fabs(found), 0); // of bodies that never met, it were 0 by contact.stiffness
-      ck_assert_msg(fabs(found - shares[g]) <= asked->tolerance * whole,
+      ck_assert_msg(fabs(found - shares[g]) <= tolerance * whole,
                     "%s by %s: p dg/dp = %.12g, replays %.12g, g = %.6g", asked->of[g], asked->by[p], found,
                     shares[g], answer.gradient.values[g]);
     }

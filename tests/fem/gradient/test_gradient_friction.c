@@ -5,7 +5,6 @@
 START_TEST(a_block_that_is_rubbed_agrees_with_differences_of_replays) {
   const Asked asked = {.scene = "gradient_rub",
                        .setting = "time.end=1",
-                       .tolerance = 1e-6,
                        .least_steps = 7,
                        .least_switches = 20,
                        .of = {"displacement:lower:x", "probe:top:x", "force:upper:lower:x",
@@ -20,7 +19,6 @@ END_TEST
 START_TEST(a_slab_between_obstacles_agrees_with_differences_of_replays) {
   const Asked asked = {.scene = "gradient_drag",
                        .setting = "time.end=1",
-                       .tolerance = 1e-6,
                        .least_steps = 6,
                        .least_switches = 20,
                        .of = {"displacement:slab:y", "force:slab:block:x", "force:floor:slab:y",
@@ -37,7 +35,6 @@ START_TEST(a_body_that_rubs_on_itself_agrees_with_differences_of_replays) {
   const Asked asked = {
       .scene = "gradient_clamp",
       .setting = "time.end=1",
-      .tolerance = 1e-6,
       .least_steps = 6,
       .least_switches = 20,
       .of = {"displacement:clamp:x", "position:clamp:20:y", "reaction:clamp:driven[0]:x", "energy"},

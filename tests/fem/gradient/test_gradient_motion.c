@@ -9,7 +9,6 @@ START_TEST(a_block_thrown_upon_a_shaken_one_agrees_with_differences_of_replays) 
   const Asked asked = {
       .scene = "gradient_motion",
       .setting = "time.end=0.06",
-      .tolerance = 1e-6,
       .of = {"displacement:upper:z", "position:upper:3:x", "reaction:lower:driven[0]:z", "energy"},
       .by = {"bodies.lower.material.young", "bodies.upper.material.density", "bodies.upper.velocity[2]",
              "bodies.lower.driven[0].amplitude[2]", "contact.stiffness", "bodies.upper.loads[0].force[0]"}};
@@ -34,10 +33,9 @@ START_TEST(a_block_of_two_materials_agrees_with_differences_of_replays) {
       .scene = "gradient_motion",
       .setting = "bodies.upper.materials=[{halfspace: {point: [0.09, 0, 0], normal: [-1, 0, 0]}, young: 3e5, "
                  "poisson: 0.3, density: 2000}]",
-      .tolerance = 1e-6,
       .of = {"displacement:upper:z", "energy"},
       .by = {"bodies.upper.material.young", "bodies.upper.materials[0].young",
-             "bodies.upper.material.density", "bodies.upper.materials[0].density"}};
+             "bodies.upper.material.density", "bodies.upper.materials[0].density", "contact.stiffness"}};
   check_against_replays(&asked);
 }
 END_TEST
@@ -46,7 +44,6 @@ START_TEST(a_damped_block_thrown_upon_another_agrees_with_differences_of_replays
   const Asked asked = {
       .scene = "gradient_damped",
       .setting = "time.end=0.03",
-      .tolerance = 1e-6,
       .of = {"displacement:upper:z", "position:upper:3:x", "reaction:lower:driven[0]:x", "energy"},
       .by = {"effects.damping", "bodies.upper.material.damping", "bodies.upper.material.viscosity",
              "bodies.upper.material.bulk_viscosity", "bodies.lower.material.young",
@@ -71,32 +68,38 @@ static double work_along(FemSystem *system, const FemState *state, const double 
   return work;
 }
 
-// Forces are quadratic in positions: what the derivative leaves falls by four where the way is halved. They
-// are linear in velocities: it leaves nothing.
+// What the derivative leaves of λ · f along the whole way, its half and its quarter. Returns λ · f here.
+static double find_left(FemSystem *system, const FemState *state, const FemDamping *damping,
+                        const double *way, const double *lambda, bool moves, double left[3]) {
+  double slope = 0, here = work_along(system, state, way, lambda, 0, moves);
+  for (size_t i = 0; i < damping->value_count; i++)
+    slope += way[i] * (moves ? damping->now : damping->rate)[i];
+  ck_assert_double_gt(fabs(slope), 0);
+  for (int k = 0; k < 3; k++) {
+    double share = 1.0 / (1 << k);
+    left[k] = work_along(system, state, way, lambda, share, moves) - here - share * slope;
+  }
+  return here;
+}
+
+// Forces are linear in velocities: the derivative leaves nothing. They are quadratic in positions: what it
+// leaves falls by four where the way is halved.
 static void check_pull(FemSystem *system, FemState *state, FemDamping *damping, double *way, double *lambda) {
-  size_t count = damping->value_count;
+  double left[3];
   Random random = random_seeded(7, 0);
-  for (size_t i = 0; i < count; i++) {
-    state->positions[i] += 0.01 * (random_between(&random, -0.5, 0.5));
+  for (size_t i = 0; i < damping->value_count; i++) {
+    state->positions[i] += 0.01 * random_between(&random, -0.5, 0.5);
     state->velocities[i] = random_between(&random, -0.5, 0.5);
-    way[i] = 0.01 * (random_between(&random, -0.5, 0.5));
-    lambda[i] = 1e-3 * (random_between(&random, -0.5, 0.5));
+    way[i] = 0.01 * random_between(&random, -0.5, 0.5);
+    lambda[i] = 1e-3 * random_between(&random, -0.5, 0.5);
   }
   fem_damping_begin(damping, state);
   ck_assert_ok(fem_damping_pull(damping, lambda, 1));
-  for (int moves = 0; moves < 2; moves++) {
-    double slope = 0, left[3], here = work_along(system, state, way, lambda, 0, moves);
-    for (size_t i = 0; i < count; i++) slope += way[i] * (moves ? damping->now : damping->rate)[i];
-    ck_assert_double_gt(fabs(slope), 0);
-    for (int k = 0; k < 3; k++) {
-      double share = 1.0 / (1 << k);
-      left[k] = work_along(system, state, way, lambda, share, moves) - here - share * slope;
-    }
-    if (!moves) ck_assert_double_le(fabs(left[0]), 1e-12 * fabs(here));
-    if (!moves) continue;
-    ck_assert_double_gt(fabs(left[0]), 1e-6 * fabs(slope));
-    for (int k = 0; k < 2; k++) ck_assert_near(left[k], 4 * left[k + 1], 1e-9 * fabs(left[k]));
-  }
+  double here = find_left(system, state, damping, way, lambda, false, left);
+  ck_assert_double_le(fabs(left[0]), 1e-12 * fabs(here));
+  here = find_left(system, state, damping, way, lambda, true, left);
+  ck_assert_double_gt(fabs(left[0]), 1e-6 * fabs(here));
+  for (int k = 0; k < 2; k++) ck_assert_near(left[k], 4 * left[k + 1], 1e-9 * fabs(left[k]));
 }
 
 START_TEST(what_damping_has_by_positions_and_velocities_leaves_the_second_order) {

@@ -20,6 +20,7 @@ static double pulled_by(const SceneRun *run) {
 
 static const char *const elements[] = {"bodies.bar.element=linear", "bodies.bar.element=nodal",
                                        "bodies.bar.element=quadratic"};
+enum { ELEMENTS = sizeof elements / sizeof *elements };
 
 // p (l₁/E₁ + l₂/E₂); ν = 0, so that the parts do not hold each other at the sides.
 START_TEST(two_materials_one_behind_the_other_are_springs_in_series) {
@@ -174,10 +175,10 @@ END_TEST
 
 int main(void) {
   TCase *cases = tcase_create("parts");
-  tcase_add_loop_test(cases, two_materials_one_behind_the_other_are_springs_in_series, 0, 3);
-  tcase_add_loop_test(cases, two_materials_side_by_side_are_springs_in_parallel, 0, 3);
-  tcase_add_loop_test(cases, masses_are_those_of_the_materials, 0, 3);
-  tcase_add_loop_test(cases, one_material_given_twice_is_one_material, 0, 3);
+  tcase_add_loop_test(cases, two_materials_one_behind_the_other_are_springs_in_series, 0, ELEMENTS);
+  tcase_add_loop_test(cases, two_materials_side_by_side_are_springs_in_parallel, 0, ELEMENTS);
+  tcase_add_loop_test(cases, masses_are_those_of_the_materials, 0, ELEMENTS);
+  tcase_add_loop_test(cases, one_material_given_twice_is_one_material, 0, ELEMENTS);
   tcase_add_test(cases, a_bar_of_two_laws_keeps_its_energy_in_motion);
   tcase_add_test(cases, contact_is_as_stiff_as_the_skin_and_as_the_whole);
   tcase_add_loop_test(cases, what_is_no_part_is_refused, 0, sizeof wrong / sizeof *wrong);
