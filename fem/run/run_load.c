@@ -28,6 +28,13 @@ static Status find_power(FemRunState *run, double time, double *power) {
   return STATUS_OK;
 }
 
+// The end of a step. Rounding leaves no step of its own before a frame: over no way all that slides is just
+// between sliding and sticking.
+static double find_end(const FemRunState *run, double step, double target, double resolution) {
+  double stop = fmin(target, run->target), to = run->time + step;
+  return to < stop - resolution ? to : stop;
+}
+
 Status fem_run_load_advance(FemRunState *run) {
   const FemSceneDef *scene = run->model->scene;
   double longest = scene->max_step > 0 ? scene->max_step : scene->end / scene->frames;
@@ -36,7 +43,7 @@ Status fem_run_load_advance(FemRunState *run) {
                             .resolution = FEM_ROUNDING * scene->end / scene->frames,
                             .static_share = scene->tolerance};
   double target = fem_scene_frame_time(scene, run->next_frame),
-         to = fmin(run->time + step, fmin(target, run->target)), from = run->time,
+         to = find_end(run, step, target, foresight.resolution), from = run->time,
          work_before = run->statics.driven_work;
   to = fem_system_horizon(&run->system, &foresight, run->time, to);
   Status status = fem_statics_step(&run->statics, run->time, to, run->u);

@@ -31,6 +31,34 @@ START_TEST(a_slab_between_obstacles_agrees_with_differences_of_replays) {
 }
 END_TEST
 
+START_TEST(a_slab_under_a_rolling_cylinder_agrees_with_differences_of_replays) {
+  const Asked asked = {.scene = "gradient_roll",
+                       .setting = "time.end=1",
+                       .tolerance = 1e-6,
+                       .least_steps = 6,
+                       .least_switches = 15,
+                       .of = {"displacement:slab:x", "force:roll:slab:x", "moment:roll:y",
+                              "reaction:slab:fixed[0]:z"},
+                       .by = {"bodies.slab.material.young", "contact.friction", "contact.stiffness",
+                              "obstacles.roll.motion.table[2][1]", "obstacles.roll.cylinder.centre[2]"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
+START_TEST(a_slab_on_a_plate_of_tetrahedra_agrees_with_differences_of_replays) {
+  const Asked asked = {.scene = "gradient_plate",
+                       .setting = "time.end=1",
+                       .tolerance = 1e-6,
+                       .least_steps = 6,
+                       .least_switches = 19,
+                       .of = {"displacement:slab:x", "force:slab:plate:y", "moment:slab:plate:z",
+                              "reaction:slab:fixed[0]:x"},
+                       .by = {"bodies.slab.material.young", "contact.friction", "contact.stiffness",
+                              "obstacles.plate.motion.table[1][2]", "obstacles.plate.place.translate[2]"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
 START_TEST(a_body_that_rubs_on_itself_agrees_with_differences_of_replays) {
   const Asked asked = {
       .scene = "gradient_clamp",
@@ -63,6 +91,8 @@ int main(void) {
   TCase *test_case = tcase_create("gradient_friction");
   tcase_add_test(test_case, a_block_that_is_rubbed_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_slab_between_obstacles_agrees_with_differences_of_replays);
+  tcase_add_test(test_case, a_slab_under_a_rolling_cylinder_agrees_with_differences_of_replays);
+  tcase_add_test(test_case, a_slab_on_a_plate_of_tetrahedra_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_body_that_rubs_on_itself_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_block_that_sticks_and_slips_in_motion_agrees_with_differences_of_replays);
   return suite_run("gradient_friction", test_case, 600);

@@ -65,6 +65,19 @@ START_TEST(a_linear_body_is_in_equilibrium_after_one_solve) {
 END_TEST
 
 // All that is left of its forces is rounding of coordinates of the size of 3 m.
+// Five sixths of the end as a sum of sixths are less than that by rounding.
+START_TEST(no_step_of_load_is_left_by_rounding) {
+  SceneRun run;
+  char text[1024];
+  snprintf(text, sizeof text, "time: {end: 1, static: true}\n%s", BEAM);
+  char *frames = strstr(text, "frames: 1");
+  frames[strlen("frames: ")] = '6';
+  run_well(&run, text);
+  ck_assert_int_eq(run.result.integrator.steps, 6);
+  scene_close(&run);
+}
+END_TEST
+
 START_TEST(a_body_that_nothing_loads_is_in_equilibrium) {
   SceneRun run;
   run_well(&run, "time: {end: 1, static: true}\n"
@@ -351,6 +364,7 @@ int main(void) {
   TCase *test_case = tcase_create("statics");
   tcase_add_test(test_case, a_static_scene_has_half_the_unknowns);
   tcase_add_test(test_case, a_linear_body_is_in_equilibrium_after_one_solve);
+  tcase_add_test(test_case, no_step_of_load_is_left_by_rounding);
   tcase_add_test(test_case, a_body_that_nothing_loads_is_in_equilibrium);
   tcase_add_test(test_case, rubber_pulled_to_twice_its_length_pulls_back_as_theory_says);
   tcase_add_test(test_case, a_block_comes_to_rest_on_the_ground);
