@@ -7,8 +7,8 @@
 //
 //   (J + c D + c² M)ᵀ β_n = −∂g/∂u − c ∂g/∂v − ū_n − (∂q_n/∂u)ᵀ q̄_n − c s_n − a₁ α_{n+1} − a₂ α_{n+2}
 //   α_n = (c M + D) β_n + s_n + ∂g/∂v
-//   ū_{n−1} = (∂f/∂u_{n−1})ᵀ λ_n + (∂q_n/∂u_{n−1})ᵀ q̄_n,   q̄_{n−1} = (∂f/∂q_{n−1})ᵀ λ_n + (∂q_n/∂q_{n−1})ᵀ
-//   q̄_n
+//   ū_{n−1} = (∂f/∂u_{n−1})ᵀ λ_n + (∂q_n/∂u_{n−1})ᵀ q̄_n
+//   q̄_{n−1} = (∂f/∂q_{n−1})ᵀ λ_n + (∂q_n/∂q_{n−1})ᵀ q̄_n
 //   dg/dp = ∂g/∂p + Σ λ_n · (∂f/∂p − ∂M/∂p v̇_n) + q̄_n · ∂q_n/∂p
 //
 // Without friction and damping J is the matrix; with them J is not symmetric, and its transpose is applied
