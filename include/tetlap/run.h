@@ -16,7 +16,8 @@
  *   tetlap_run_close(run);
  *
  * Every function that can fail returns 0 or the exit code that the program `tetlap` would have
- * (docs/output.md), and leaves a message. Nothing is printed, no process ended. Units: SI.
+ * (docs/output.md), and leaves a message. Nothing is printed, no process ended. Units: SI. Of a run that is
+ * NULL, counts are 0, arrays NULL, the time NaN, and all else fails.
  *
  * A run belongs to one thread at a time: functions that take a run that is not const refuse another, a fork
  * of the process, and, but for tetlap_run_forces, the run's own on_step. Numbers of threads, and the level

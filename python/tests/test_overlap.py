@@ -315,6 +315,10 @@ class TheLibrary(unittest.TestCase):
         for name in _library._FUNCTIONS:
             self.assertRegex(self.header, rf"\btetlap_overlap_{name}\(")
 
+    def test_the_version_is_that_of_the_tree(self):
+        source = Path(os.environ["TETLAP_SOURCE_DIR"], "CMakeLists.txt").read_text()
+        self.assertEqual(tetlap.__version__, re.search(r"project\(tetlap VERSION ([0-9.]+)", source).group(1))
+
     def test_reading_a_run_loads_no_library(self):
         words = "import os, tetlap; assert 'libtetlap' not in open('/proc/self/maps').read()"
         subprocess.run([sys.executable, "-c", words], check=True)

@@ -34,7 +34,7 @@ Models of overlap are measured on labelled pairs:
     read_weights, write_weights networks of tetlap's as arrays, to and from PyTorch
     verdict                     what a model, yours too, is fit for: to detect, for forces, to drive a motion
 
-Units are SI. Arrays are float64 of NumPy; shapes stand in parentheses, units in brackets. Wrong arguments raise TypeError or ValueError;
+`tetlap.__version__` is the library's. Units are SI. Arrays are float64 of NumPy; shapes stand in parentheses, units in brackets. Wrong arguments raise TypeError or ValueError;
 UnknownNameError (a KeyError) is a name that is not there, RunError a run that failed, with the program's own message and exit code, Error
 all else that is tetlap's. Messages of the program go to the logger "tetlap": logging.basicConfig(level="INFO") shows them.
 """
@@ -61,6 +61,10 @@ __all__ = ["Body", "Compared", "Comparison", "Contact", "Drive", "Error", "Failu
 
 
 def __getattr__(name):
+    if name == "__version__":
+        from ._library import version
+
+        return version()
     if name == "torch":
         from importlib import import_module
 

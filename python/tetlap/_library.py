@@ -52,6 +52,7 @@ class List(ctypes.Structure):
 
 
 _FUNCTIONS = {
+    "version": (c_char_p, []),
     "message": (c_char_p, []),
     "model": (c_char_p, [c_int]),
     "open_with": (c_int, [POINTER(c_void_p), POINTER(Options)]),
@@ -78,6 +79,11 @@ def _load():
     except OSError as error:
         raise Error(f"the library of overlap volumes cannot be loaded ({error}); build or install tetlap, or name the "
                     "library by TETLAP_LIBRARY") from None
+
+
+def version():
+    """The library's, which is the program's."""
+    return _function("version")().decode()
 
 
 def _call(name, *arguments):

@@ -191,6 +191,35 @@ START_TEST(what_makes_no_sense_is_refused_with_a_message) {
 }
 END_TEST
 
+START_TEST(a_run_that_is_not_open_is_refused) {
+  const double up[3] = {0, 0, 1};
+  const double *forces, *pressure;
+  double stress[6];
+  TetlapRunContact contact = TETLAP_RUN_CONTACT_INIT;
+  TetlapRunBody body = TETLAP_RUN_BODY_INIT;
+  TetlapRunState *state;
+  TetlapRun *run;
+  ck_assert_refused(tetlap_run_open(&run, "/no/such.yaml", NULL), "/no/such.yaml");
+  ck_assert_refused(tetlap_run_advance(run, 0.1), "not opened, or is closed");
+  ck_assert_refused(tetlap_run_drive(run, "plate", up, 0.1), "the run is NULL");
+  ck_assert_refused(tetlap_run_load(run, "block", up, 3, 0), "the run is NULL");
+  ck_assert_refused(tetlap_run_forces(run, &forces, &pressure), "the run is NULL");
+  ck_assert_refused(tetlap_run_stress(run, stress), "the run is NULL");
+  ck_assert_refused(tetlap_run_body(run, 0, &body), "the run is NULL");
+  ck_assert_refused(tetlap_run_contact(run, "block", "plate", &contact), "the run is NULL");
+  ck_assert_refused(tetlap_run_contact_at(run, 0, &contact), "the run is NULL");
+  ck_assert_refused(tetlap_run_record(run, "record.jsonl"), "the run is NULL");
+  ck_assert_refused(tetlap_run_keep(run, &state), "the run is NULL");
+  ck_assert_refused(tetlap_run_state_read(run, &state, HAND), "the run is NULL");
+  ck_assert_int_eq(tetlap_run_body_count(run) + tetlap_run_vertex_count(run) + tetlap_run_tet_count(run) +
+                       tetlap_run_contact_count(run),
+                   0);
+  ck_assert_ptr_null(tetlap_run_points(run));
+  ck_assert(isnan(tetlap_run_time(run)));
+  tetlap_run_close(run);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("run");
   tcase_add_checked_fixture(cases, folder_make, folder_remove);
@@ -200,5 +229,6 @@ int main(void) {
   tcase_add_test(cases, a_fork_of_the_process_may_not_use_it);
   tcase_add_test(cases, states_of_other_scenes_and_no_states_are_refused);
   tcase_add_test(cases, what_makes_no_sense_is_refused_with_a_message);
+  tcase_add_test(cases, a_run_that_is_not_open_is_refused);
   return suite_run("run", cases, 120);
 }

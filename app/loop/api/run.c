@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <tetlap/run.h>
 
+#include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -38,7 +39,18 @@ static Status check_size(size_t given, size_t known, const char *what) {
                      known);
 }
 
+static Status check_given(const void *given, const char *what) {
+  return given ? STATUS_OK : status_fail(STATUS_USAGE, "%s is NULL", what);
+}
+
+static Status check_open(const TetlapRun *run) {
+  if (run) return STATUS_OK;
+  return status_fail(STATUS_USAGE,
+                     "the run is NULL: it was not opened, or is closed; tetlap_run_open makes one");
+}
+
 static Status check_process(const TetlapRun *run) {
+  TRY(check_open(run));
   if (getpid() == run->process) return STATUS_OK;
   return status_fail(STATUS_USAGE,
                      "the run belongs to the process that opened it; a fork of it has to open its own");
@@ -54,10 +66,6 @@ static Status enter(TetlapRun *run) {
 static int leave(TetlapRun *run, Status status) {
   atomic_store(&run->is_busy, false);
   return code_of(status);
-}
-
-static Status check_given(const void *given, const char *what) {
-  return given ? STATUS_OK : status_fail(STATUS_USAGE, "%s is NULL", what);
 }
 
 static Status tell_step(void *self, AppLoop *loop) {
@@ -98,6 +106,7 @@ static Status open_run(TetlapRun *run, const char *scene, const TetlapRunOptions
 }
 
 int tetlap_run_open(TetlapRun **run, const char *scene, const TetlapRunOptions *options) {
+  if (!run) return code_of(check_given(run, "where the run is to go"));
   TetlapRun *made = memory_zeroed(1, sizeof *made);
   *run = NULL;
   Status status = made ? open_run(made, scene, options) : status_no_memory("a run");
@@ -112,7 +121,7 @@ void tetlap_run_close(TetlapRun *run) {
 }
 
 double tetlap_run_time(const TetlapRun *run) {
-  return app_loop_time(&run->loop);
+  return run ? app_loop_time(&run->loop) : NAN;
 }
 
 int tetlap_run_advance(TetlapRun *run, double until) {
@@ -127,10 +136,12 @@ static Status check_number(int number, int count, const char *what) {
 }
 
 int tetlap_run_body_count(const TetlapRun *run) {
-  return run->loop.job.model.body_count;
+  return run ? run->loop.job.model.body_count : 0;
 }
 
 static Status describe_body(const TetlapRun *run, int number, TetlapRunBody *body) {
+  TRY(check_open(run));
+  TRY(check_given(body, "where the body is to go"));
   const FemModel *model = &run->loop.job.model;
   TRY(check_size(body->size, sizeof *body, "TetlapRunBody"));
   TRY(check_number(number, model->body_count, "body"));
@@ -150,44 +161,48 @@ int tetlap_run_body(const TetlapRun *run, int number, TetlapRunBody *body) {
 }
 
 int tetlap_run_vertex_count(const TetlapRun *run) {
-  return run->loop.job.model.vertex_count;
+  return run ? run->loop.job.model.vertex_count : 0;
 }
 
 int tetlap_run_tet_count(const TetlapRun *run) {
-  return run->loop.job.model.tet_count;
+  return run ? run->loop.job.model.tet_count : 0;
 }
 
 const int *tetlap_run_tets(const TetlapRun *run) {
-  return &run->loop.job.model.tets[0][0];
+  return run ? &run->loop.job.model.tets[0][0] : NULL;
 }
 
 const double *tetlap_run_points(const TetlapRun *run) {
-  return app_loop_state(&run->loop)->positions;
+  return run ? app_loop_state(&run->loop)->positions : NULL;
 }
 
 const double *tetlap_run_velocities(const TetlapRun *run) {
-  return app_loop_state(&run->loop)->velocities;
+  return run ? app_loop_state(&run->loop)->velocities : NULL;
 }
 
 // From within on_step, too.
 int tetlap_run_forces(TetlapRun *run, const double **forces, const double **pressure) {
   *forces = *pressure = NULL;
-  if (atomic_load(&run->tells) && pthread_equal(run->teller, pthread_self()))
+  if (run && atomic_load(&run->tells) && pthread_equal(run->teller, pthread_self()))
     return code_of(app_loop_vertex_forces(&run->loop, forces, pressure));
   Status status = enter(run);
   return status ? code_of(status) : leave(run, app_loop_vertex_forces(&run->loop, forces, pressure));
 }
 
 int tetlap_run_stress(const TetlapRun *run, double *stress) {
+  const Status status = run ? check_given(stress, "where the stress is to go") : check_open(run);
+  if (status) return code_of(status);
   app_loop_stress(&run->loop, stress);
   return 0;
 }
 
 int tetlap_run_contact_count(const TetlapRun *run) {
-  return run->loop.contact_count;
+  return run ? run->loop.contact_count : 0;
 }
 
 static Status describe_contact(const TetlapRun *run, int number, double sign, TetlapRunContact *contact) {
+  TRY(check_open(run));
+  TRY(check_given(contact, "where the contact is to go"));
   TRY(check_size(contact->size, sizeof *contact, "TetlapRunContact"));
   TRY(check_number(number, run->loop.contact_count, "contact"));
   const AppLoopContact *of = &run->loop.contacts[number];
@@ -213,6 +228,7 @@ int tetlap_run_contact_at(const TetlapRun *run, int number, TetlapRunContact *co
 
 static Status find_contact(const TetlapRun *run, const char *a, const char *b, TetlapRunContact *contact) {
   int number;
+  TRY(check_open(run));
   TRY(check_given(a, "a name"));
   TRY(check_given(b, "a name"));
   TRY(app_loop_contact(&run->loop, a, b, &number));
@@ -240,8 +256,14 @@ int tetlap_run_load(TetlapRun *run, const char *name, const double *values, int 
   return status ? code_of(status) : leave(run, set(run, APP_LOOP_LOAD, name, values, count, ramp));
 }
 
+static Status record(const TetlapRun *run, const char *path) {
+  TRY(check_open(run));
+  TRY(check_given(path, "a file's name"));
+  return app_loop_diary_write(&run->loop.diary, path);
+}
+
 int tetlap_run_record(const TetlapRun *run, const char *path) {
-  return code_of(app_loop_diary_write(&run->loop.diary, path));
+  return code_of(record(run, path));
 }
 
 // A new one, filled by keeping or by reading.
@@ -276,11 +298,20 @@ void tetlap_run_state_free(TetlapRunState *state) {
   memory_free(state);
 }
 
+static Status write_state(const TetlapRun *run, const TetlapRunState *state, const char *path) {
+  TRY(check_open(run));
+  TRY(check_given(state, "the state"));
+  TRY(check_given(path, "a file's name"));
+  return app_loop_state_write(&run->loop, &state->state, path);
+}
+
 int tetlap_run_state_write(const TetlapRun *run, const TetlapRunState *state, const char *path) {
-  return code_of(app_loop_state_write(&run->loop, &state->state, path));
+  return code_of(write_state(run, state, path));
 }
 
 int tetlap_run_state_read(const TetlapRun *run, TetlapRunState **state, const char *path) {
   *state = NULL;
-  return code_of(make_state(state, NULL, run, path));
+  Status status = check_open(run);
+  if (!status) status = check_given(path, "a file's name");
+  return code_of(status ? status : make_state(state, NULL, run, path));
 }
