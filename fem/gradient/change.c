@@ -96,27 +96,19 @@ static Status press(FemChange *change, const FemTangent *tangent, const FemParam
 
 // ---- Prescribed motion.
 
-// The value of a copy of a motion that the parameter is, and a step for differences of it; at the beginning,
-// where it does not act yet, any.
-static double *value_in(FemConstraintDef *motion, const FemParameter *parameter, double time, double length,
-                        double *step) {
+// A step for differences by a motion's parameter; at the beginning, where it does not act yet, any.
+static double step_of(const FemParameter *parameter, double time, double length) {
   static const double TURN = 1e-2; // [rad]
   double rate = time > 0 ? 1 / time : 1;
-  *step = length;
   switch (parameter->kind) {
   case FEM_PARAMETER_VELOCITY:
-    *step = length * rate;
-    return &motion->velocity[parameter->component];
-  case FEM_PARAMETER_AMPLITUDE:
-    return &motion->amplitude[parameter->component];
+    return length * rate;
   case FEM_PARAMETER_FREQUENCY:
-    *step = TURN / (2 * M_PI) * rate;
-    return &motion->frequency;
+    return TURN / (2 * M_PI) * rate;
   case FEM_PARAMETER_SPIN:
-    *step = TURN * rate;
-    return &motion->spin;
+    return TURN * rate;
   default:
-    return &motion->table[4 * parameter->row + 1 + parameter->component];
+    return length;
   }
 }
 
@@ -132,7 +124,8 @@ static Status copy_motion(Motion *motion, const FemConstraintDef *def, const Fem
   *motion = (Motion){.def = *def, .time = fmin(time, def->until), .is_over = time >= def->until};
   motion->def.table = memory_copy(def->table, 4 * (size_t)def->table_count, sizeof(double));
   if (!motion->def.table) return status_no_memory("a motion");
-  motion->value = value_in(&motion->def, parameter, motion->time, length, &motion->step);
+  motion->value = fem_parameter_of_motion(&motion->def, parameter);
+  motion->step = step_of(parameter, motion->time, length);
   motion->middle = *motion->value;
   return STATUS_OK;
 }

@@ -6,34 +6,45 @@
 
 #include "fem/model/compliance.h"
 
+typedef enum Owner { OF_SCENE, OF_MATERIAL, OF_MOTION } Owner;
+
+// Of a load the unit is told by its kind.
+static const struct {
+  Owner owner;
+  const char *unit;
+} kinds[] = {
+    [FEM_PARAMETER_YOUNG] = {OF_MATERIAL, "Pa"},
+    [FEM_PARAMETER_POISSON] = {OF_MATERIAL, ""},
+    [FEM_PARAMETER_MOONEY] = {OF_MATERIAL, ""},
+    [FEM_PARAMETER_OGDEN_EXPONENT] = {OF_MATERIAL, ""},
+    [FEM_PARAMETER_OGDEN_SHARE] = {OF_MATERIAL, ""},
+    [FEM_PARAMETER_FIBRE] = {OF_MATERIAL, "Pa"},
+    [FEM_PARAMETER_DAMPING] = {OF_MATERIAL, "s"},
+    [FEM_PARAMETER_VISCOSITY] = {OF_MATERIAL, "Pa s"},
+    [FEM_PARAMETER_BULK_VISCOSITY] = {OF_MATERIAL, "Pa s"},
+    [FEM_PARAMETER_DENSITY] = {OF_SCENE, "kg/m³"},
+    [FEM_PARAMETER_GRAVITY] = {OF_SCENE, "m/s²"},
+    [FEM_PARAMETER_LOAD] = {OF_SCENE, "N"},
+    [FEM_PARAMETER_VELOCITY] = {OF_MOTION, "m/s"},
+    [FEM_PARAMETER_AMPLITUDE] = {OF_MOTION, "m"},
+    [FEM_PARAMETER_FREQUENCY] = {OF_MOTION, "Hz"},
+    [FEM_PARAMETER_SPIN] = {OF_MOTION, "rad/s"},
+    [FEM_PARAMETER_TABLE] = {OF_MOTION, "m"},
+    [FEM_PARAMETER_PLACE] = {OF_SCENE, "m"},
+    [FEM_PARAMETER_CONTACT_STIFFNESS] = {OF_SCENE, "Pa/m"},
+    [FEM_PARAMETER_PAIR_STIFFNESS] = {OF_SCENE, "Pa/m"},
+    [FEM_PARAMETER_FRICTION] = {OF_SCENE, ""},
+    [FEM_PARAMETER_PAIR_FRICTION] = {OF_SCENE, ""},
+    [FEM_PARAMETER_START] = {OF_SCENE, "m/s"},
+    [FEM_PARAMETER_CONTACT_VISCOSITY] = {OF_SCENE, "Pa s/m²"},
+};
+
 bool fem_parameter_is_of_material(const FemParameter *parameter) {
-  switch (parameter->kind) {
-  case FEM_PARAMETER_YOUNG:
-  case FEM_PARAMETER_POISSON:
-  case FEM_PARAMETER_MOONEY:
-  case FEM_PARAMETER_OGDEN_EXPONENT:
-  case FEM_PARAMETER_OGDEN_SHARE:
-  case FEM_PARAMETER_FIBRE:
-  case FEM_PARAMETER_DAMPING:
-  case FEM_PARAMETER_VISCOSITY:
-  case FEM_PARAMETER_BULK_VISCOSITY:
-    return true;
-  default:
-    return false;
-  }
+  return kinds[parameter->kind].owner == OF_MATERIAL;
 }
 
 bool fem_parameter_is_of_motion(const FemParameter *parameter) {
-  switch (parameter->kind) {
-  case FEM_PARAMETER_VELOCITY:
-  case FEM_PARAMETER_AMPLITUDE:
-  case FEM_PARAMETER_FREQUENCY:
-  case FEM_PARAMETER_SPIN:
-  case FEM_PARAMETER_TABLE:
-    return true;
-  default:
-    return false;
-  }
+  return kinds[parameter->kind].owner == OF_MOTION;
 }
 
 static const FemContactDef *contact_of(const FemModel *model) {
@@ -273,47 +284,60 @@ static double place_of(const FemModel *model, const FemParameter *parameter) {
   return obstacle->kind == FEM_OBSTACLE_MESH ? obstacle->placement.translate[c] : obstacle->point[c];
 }
 
-static double value_of_material(const FemMaterial *material, const FemParameter *parameter) {
-  switch (parameter->kind) {
+double *fem_parameter_of_material(FemMaterial *material, FemParameterKind kind, int row) {
+  switch (kind) {
   case FEM_PARAMETER_YOUNG:
-    return material->young;
+    return &material->young;
   case FEM_PARAMETER_POISSON:
-    return material->poisson;
+    return &material->poisson;
   case FEM_PARAMETER_MOONEY:
-    return material->mooney;
+    return &material->mooney;
   case FEM_PARAMETER_OGDEN_EXPONENT:
-    return material->exponents[parameter->row];
+    return &material->exponents[row];
   case FEM_PARAMETER_OGDEN_SHARE:
-    return material->shares[parameter->row];
+    return &material->shares[row];
   case FEM_PARAMETER_FIBRE:
-    return material->fibre_stiffness;
+    return &material->fibre_stiffness;
+  case FEM_PARAMETER_DAMPING:
+    return &material->damping;
   case FEM_PARAMETER_VISCOSITY:
-    return material->viscosity;
+    return &material->viscosity;
   case FEM_PARAMETER_BULK_VISCOSITY:
-    return material->bulk_viscosity;
+    return &material->bulk_viscosity;
   default:
-    return material->density;
+    return &material->density;
   }
 }
 
-static double value_of_motion(const FemConstraintDef *motion, const FemParameter *parameter) {
+double *fem_parameter_of_motion(FemConstraintDef *motion, const FemParameter *parameter) {
   switch (parameter->kind) {
   case FEM_PARAMETER_VELOCITY:
-    return motion->velocity[parameter->component];
+    return &motion->velocity[parameter->component];
   case FEM_PARAMETER_AMPLITUDE:
-    return motion->amplitude[parameter->component];
+    return &motion->amplitude[parameter->component];
   case FEM_PARAMETER_FREQUENCY:
-    return motion->frequency;
+    return &motion->frequency;
   case FEM_PARAMETER_SPIN:
-    return motion->spin;
+    return &motion->spin;
   default:
-    return motion->table[4 * parameter->row + 1 + parameter->component];
+    return &motion->table[4 * parameter->row + 1 + parameter->component];
   }
+}
+
+static double value_of_material(const FemModel *model, const FemParameter *parameter) {
+  if (parameter->part < 0) return model->scene->stiffness_damping;
+  FemMaterial material = model->parts[parameter->part].material;
+  double value = *fem_parameter_of_material(&material, parameter->kind, parameter->row);
+  return parameter->kind == FEM_PARAMETER_DAMPING ? fmax(0, value) : value; // below 0: that of the scene
+}
+
+static double value_of_motion(const FemModel *model, const FemParameter *parameter) {
+  FemConstraintDef motion = *fem_parameter_motion(model, parameter);
+  return *fem_parameter_of_motion(&motion, parameter);
 }
 
 double fem_parameter_value(const FemModel *model, const FemParameter *parameter) {
-  if (fem_parameter_is_of_motion(parameter))
-    return value_of_motion(fem_parameter_motion(model, parameter), parameter);
+  if (fem_parameter_is_of_motion(parameter)) return value_of_motion(model, parameter);
   switch (parameter->kind) {
   case FEM_PARAMETER_GRAVITY:
     return model->scene->has_gravity ? model->scene->gravity[parameter->component] : 0;
@@ -333,59 +357,14 @@ double fem_parameter_value(const FemModel *model, const FemParameter *parameter)
     return model->scene->bodies[parameter->body].velocity[parameter->component];
   case FEM_PARAMETER_CONTACT_VISCOSITY:
     return contact_of(model)->viscosity;
-  case FEM_PARAMETER_DAMPING:
-    return parameter->part < 0 ? model->scene->stiffness_damping
-                               : fmax(0, model->parts[parameter->part].material.damping);
   default:
-    return value_of_material(&model->parts[parameter->part].material, parameter);
-  }
-}
-
-static const char *unit_of_load(FemLoadKind kind) {
-  switch (kind) {
-  case FEM_LOAD_BODY_FORCE:
-    return "N/m³";
-  case FEM_LOAD_TRACTION:
-  case FEM_LOAD_PRESSURE:
-    return "Pa";
-  default:
-    return "N";
+    return value_of_material(model, parameter);
   }
 }
 
 const char *fem_parameter_unit(const FemModel *model, const FemParameter *parameter) {
-  switch (parameter->kind) {
-  case FEM_PARAMETER_YOUNG:
-  case FEM_PARAMETER_FIBRE:
-    return "Pa";
-  case FEM_PARAMETER_DENSITY:
-    return "kg/m³";
-  case FEM_PARAMETER_GRAVITY:
-    return "m/s²";
-  case FEM_PARAMETER_LOAD:
-    return unit_of_load(model->scene->bodies[parameter->body].loads[parameter->item].kind);
-  case FEM_PARAMETER_VELOCITY:
-  case FEM_PARAMETER_START:
-    return "m/s";
-  case FEM_PARAMETER_AMPLITUDE:
-  case FEM_PARAMETER_TABLE:
-  case FEM_PARAMETER_PLACE:
-    return "m";
-  case FEM_PARAMETER_FREQUENCY:
-    return "Hz";
-  case FEM_PARAMETER_DAMPING:
-    return "s";
-  case FEM_PARAMETER_VISCOSITY:
-  case FEM_PARAMETER_BULK_VISCOSITY:
-    return "Pa s";
-  case FEM_PARAMETER_CONTACT_VISCOSITY:
-    return "Pa s/m²";
-  case FEM_PARAMETER_SPIN:
-    return "rad/s";
-  case FEM_PARAMETER_CONTACT_STIFFNESS:
-  case FEM_PARAMETER_PAIR_STIFFNESS:
-    return "Pa/m";
-  default:
-    return "";
-  }
+  if (parameter->kind != FEM_PARAMETER_LOAD) return kinds[parameter->kind].unit;
+  FemLoadKind kind = model->scene->bodies[parameter->body].loads[parameter->item].kind;
+  if (kind == FEM_LOAD_BODY_FORCE) return "N/m³";
+  return kind == FEM_LOAD_TRACTION || kind == FEM_LOAD_PRESSURE ? "Pa" : "N";
 }

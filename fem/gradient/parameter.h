@@ -52,6 +52,10 @@ const char *fem_parameter_idle(const FemModel *model, const FemParameter *parame
 double fem_parameter_value(const FemModel *model, const FemParameter *parameter);
 const char *fem_parameter_unit(const FemModel *model, const FemParameter *parameter);
 
+// Where a material has its constant (`row` of ogden's), where a motion has its parameter.
+double *fem_parameter_of_material(FemMaterial *material, FemParameterKind kind, int row);
+double *fem_parameter_of_motion(FemConstraintDef *motion, const FemParameter *parameter);
+
 // The prescribed motion that a parameter is of: driven[item] of its body, or its obstacle's.
 const FemConstraintDef *fem_parameter_motion(const FemModel *model, const FemParameter *parameter);
 // The entry of contact.pairs that gives two parties their stiffness or law, −1: none does.

@@ -70,12 +70,6 @@ static void vary(FemModelPart *to, const FemModelPart *from, double ratio, FemPa
   case FEM_PARAMETER_YOUNG:
   case FEM_PARAMETER_POISSON:
     vary_lame(to, from, ratio, constant, step);
-    return;
-  case FEM_PARAMETER_MOONEY:
-    to->local.mooney += step;
-    break;
-  case FEM_PARAMETER_OGDEN_EXPONENT:
-    to->local.exponents[place] += step;
     break;
   case FEM_PARAMETER_OGDEN_SHARE:
     vary_share(&to->local, &from->local, place, step);
@@ -83,41 +77,30 @@ static void vary(FemModelPart *to, const FemModelPart *from, double ratio, FemPa
   case FEM_PARAMETER_DAMPING:
     to->damping += step;
     break;
-  case FEM_PARAMETER_VISCOSITY:
-    to->local.viscosity += step;
-    break;
-  case FEM_PARAMETER_BULK_VISCOSITY:
-    to->local.bulk_viscosity += step;
-    break;
-  default: // of the fibres
-    to->local.fibre_stiffness += step;
+  default:
+    *fem_parameter_of_material(&to->local, constant, place) += step;
     break;
   }
 }
 
 // So long that the change is not lost in rounding, and short beside where the law has a pole.
 static double step_of(const FemModelPart *part, FemParameterKind constant, int place) {
-  const FemMaterial *material = &part->material;
+  FemMaterial material = part->material;
   static const double SHARE = 0.1, OF_EXPONENT = 5e-3;
+  double value = *fem_parameter_of_material(&material, constant, place);
   switch (constant) {
-  case FEM_PARAMETER_YOUNG:
-    return SHARE * material->young;
   case FEM_PARAMETER_POISSON:
-    return SHARE * (0.5 - material->poisson);
-  case FEM_PARAMETER_OGDEN_EXPONENT:
-    return OF_EXPONENT * fabs(material->exponents[place]);
-  case FEM_PARAMETER_OGDEN_SHARE:
-    return SHARE * (material->shares[0] + material->shares[1] + material->shares[2]);
-  case FEM_PARAMETER_FIBRE:
-    return SHARE * material->fibre_stiffness;
-  case FEM_PARAMETER_DAMPING:
-    return SHARE * part->damping;
-  case FEM_PARAMETER_VISCOSITY:
-    return SHARE * material->viscosity;
-  case FEM_PARAMETER_BULK_VISCOSITY:
-    return SHARE * material->bulk_viscosity;
-  default: // mooney_rivlin's share
+    return SHARE * (0.5 - value);
+  case FEM_PARAMETER_MOONEY:
     return SHARE;
+  case FEM_PARAMETER_OGDEN_EXPONENT:
+    return OF_EXPONENT * fabs(value);
+  case FEM_PARAMETER_OGDEN_SHARE:
+    return SHARE * (material.shares[0] + material.shares[1] + material.shares[2]);
+  case FEM_PARAMETER_DAMPING: // the scene's, where the material has none
+    return SHARE * part->damping;
+  default:
+    return SHARE * value;
   }
 }
 
@@ -165,9 +148,8 @@ Status fem_varied_derive_stiffness(FemVaried *varied, int part, FemParameterKind
   static const double SHARE = 1e-3;
   FemMaterial *material = &varied->model.parts[part].material;
   const FemMaterial kept = *material;
-  bool is_young = constant == FEM_PARAMETER_YOUNG;
-  double *value = is_young ? &material->young : &material->poisson, middle = *value;
-  double step = SHARE * (is_young ? middle : 0.5 - middle);
+  double *value = fem_parameter_of_material(material, constant, 0), middle = *value;
+  double step = SHARE * (constant == FEM_PARAMETER_YOUNG ? middle : 0.5 - middle);
   *party_count = varied->model.body_count + fem_scene_shape_count(varied->model.scene);
   *rates = memory_zeroed((size_t)varied->model.body_count * (size_t)*party_count, sizeof **rates);
   Status status = *rates ? STATUS_OK : status_no_memory("contact stiffness");
