@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Broad phase: which tetrahedra of different bodies may overlap, kept over several steps by a skin margin.
-// Boxes are cut to the shared bounds of two bodies, grown by half the margin, and intersected by CGAL's
-// box_intersection_d (Zomorodian and Edelsbrunner 2002). As long as no vertex has moved by more than half the
+// Boxes are cut to the shared bounds of two bodies, grown by half the margin, and intersected
+// (contact/search/boxes.h). As long as no vertex has moved by more than half the
 // margin since the list was made, the list holds every overlapping pair.
 #ifndef TETLAP_CONTACT_BROAD_H
 #define TETLAP_CONTACT_BROAD_H

@@ -3,6 +3,8 @@
 #include "blocks.h"
 
 #include "base/memory.h"
+#include "base/random.h"
+#include "contact/search/boxes.h"
 #include "contact/search/broad.h"
 
 static ContactBroadSide side_of(const Blocks *blocks, int body) {
@@ -97,6 +99,46 @@ START_TEST(a_side_without_tetrahedra_has_no_pairs) {
 }
 END_TEST
 
+enum { MANY = 700 };
+
+// Of all sizes; every third where another one is, and every fifth a point.
+static void draw_boxes(Random *random, double boxes[MANY][6]) {
+  for (int k = 0; k < MANY; k++) {
+    double size = k % 5 == 0 ? 0 : 0.05 * exp(random_normal(random));
+    for (int c = 0; c < 3; c++) {
+      boxes[k][c] = k % 3 == 0 && k > 0 ? boxes[k / 2][c] : random_uniform(random);
+      boxes[k][c + 3] = boxes[k][c] + size;
+    }
+  }
+}
+
+// All at one place are in one cell of the grid, and all meet.
+START_TEST(boxes_of_all_sizes_meet_as_by_brute_force) {
+  static double a[MANY][6], b[MANY][6];
+  static char is_found[MANY][MANY];
+  Random random = random_seeded(32, (uint64_t)_i);
+  draw_boxes(&random, a);
+  draw_boxes(&random, b);
+  for (int k = 0; k < MANY && _i == 0; k++)
+    for (int c = 0; c < 6; c++) a[k][c] = b[k][c] = 1;
+  ContactBoxPairs found = {0};
+  ck_assert_ok(contact_boxes_intersect((const double(*)[6])a, MANY, (const double(*)[6])b, MANY, &found));
+  memset(is_found, 0, sizeof is_found);
+  for (size_t k = 0; k < found.count; k++) is_found[found.pairs[k][0]][found.pairs[k][1]]++;
+  size_t count = 0;
+  for (int i = 0; i < MANY; i++)
+    for (int j = 0; j < MANY; j++) {
+      bool meets = true;
+      for (int c = 0; c < 3; c++) meets = meets && a[i][c] <= b[j][c + 3] && b[j][c] <= a[i][c + 3];
+      ck_assert_int_eq(is_found[i][j], meets);
+      count += meets;
+    }
+  ck_assert_uint_eq(count, found.count);
+  ck_assert_uint_gt(count, MANY);
+  contact_boxes_destroy(&found);
+}
+END_TEST
+
 START_TEST(every_failed_allocation_is_reported) {
   Blocks blocks = two_blocks(-0.3);
   ContactBroadSide a = side_of(&blocks, 0), b = side_of(&blocks, 1);
@@ -120,6 +162,7 @@ int main(void) {
   tcase_add_loop_test(cases, the_list_is_that_of_brute_force, 0, 4);
   tcase_add_test(cases, exactly_touching_boxes_are_candidates);
   tcase_add_test(cases, appending_keeps_what_is_there);
+  tcase_add_loop_test(cases, boxes_of_all_sizes_meet_as_by_brute_force, 0, 3);
   tcase_add_test(cases, a_side_without_tetrahedra_has_no_pairs);
   tcase_add_test(cases, every_failed_allocation_is_reported);
   return suite_run("broad", cases, 60);
