@@ -9,6 +9,7 @@
 #include "app/gradient/quantity.h"
 #include "base/files/file.h"
 #include "base/memory.h"
+#include "fem/model/limits.h"
 
 // Cuts "a, b, c" in place; returns how many.
 static int cut_line(char *line, char *cells[4]) {
@@ -30,7 +31,22 @@ static bool read_number(const char *text, double *value) {
   return end != text && *end == 0 && isfinite(*value);
 }
 
-static Status read_term(const FemModel *model, char *line, bool is_misfit, FemTerm *term) {
+// "QUANTITY@TIME", or QUANTITY alone, which is taken `at` a time; cuts in place.
+static Status read_quantity(const FemModel *model, char *text, double at, FemTerm *term) {
+  char *mark = strrchr(text, '@');
+  double end = model->scene->end;
+  if (mark) *mark = 0;
+  TRY(app_gradient_read_quantity(model, text, &term->quantity));
+  term->time = at;
+  if (mark && !read_number(mark + 1, &term->time))
+    return status_fail(STATUS_INPUT, "'@%s' is no time; expected %s@TIME in seconds", mark + 1, text);
+  if (term->time > 0 && (isinf(term->time) || term->time <= end * (1 + FEM_TIME_RESOLUTION)))
+    return STATUS_OK;
+  return status_fail(STATUS_INPUT, "%s: the time %.9g s is not within the run, 0 to time.end = %.9g s", text,
+                     term->time, end);
+}
+
+static Status read_term(const FemModel *model, char *line, bool is_misfit, double at, FemTerm *term) {
   char *cells[4];
   int count = cut_line(line, cells);
   *term = (FemTerm){0};
@@ -38,10 +54,10 @@ static Status read_term(const FemModel *model, char *line, bool is_misfit, FemTe
       (is_misfit && !read_number(cells[2], &term->data)))
     return status_fail(STATUS_INPUT, "expected %s",
                        is_misfit ? "quantity, weight, data" : "quantity, weight");
-  return app_gradient_read_quantity(model, cells[0], &term->quantity);
+  return read_quantity(model, cells[0], at, term);
 }
 
-static Status read_lines(const FemModel *model, const char *path, char *text, FemGoal *goal) {
+static Status read_lines(const FemModel *model, const char *path, char *text, double time, FemGoal *goal) {
   int lines = 1;
   for (const char *at = text; *at; at++) lines += *at == '\n';
   goal->terms = memory_zeroed((size_t)lines, sizeof *goal->terms);
@@ -53,33 +69,40 @@ static Status read_lines(const FemModel *model, const char *path, char *text, Fe
     at = end ? end + 1 : NULL;
     while (isspace((unsigned char)*own)) own++;
     if (*own == 0 || *own == '#') continue;
-    TRY(status_prefix(read_term(model, own, goal->is_misfit, &goal->terms[goal->term_count]), "%s:%d", path,
-                      line));
+    FemTerm *term = &goal->terms[goal->term_count];
+    TRY(status_prefix(read_term(model, own, goal->is_misfit, time, term), "%s:%d", path, line));
     goal->term_count++;
   }
   return goal->term_count > 0 ? STATUS_OK : status_fail(STATUS_INPUT, "%s: no quantity stands in it", path);
 }
 
-static Status read_file(const FemModel *model, const char *path, FemGoal *goal) {
+static Status read_file(const FemModel *model, const char *path, double at, FemGoal *goal) {
   char *text;
   size_t size;
   TRY(file_read(path, &text, &size));
-  Status status = read_lines(model, path, text, goal);
+  Status status = read_lines(model, path, text, at, goal);
   memory_free(text);
   return status;
 }
 
-Status app_gradient_read_goal(const FemModel *model, const char *text, FemGoal *goal) {
+static Status read_one(const FemModel *model, const char *text, double at, FemTerm *term) {
+  char *own = memory_copy(text, strlen(text) + 1, 1);
+  Status status = own ? read_quantity(model, own, at, term) : status_no_memory("a quantity");
+  memory_free(own);
+  return status;
+}
+
+Status app_gradient_read_goal(const FemModel *model, const char *text, double at, FemGoal *goal) {
   static const char sum[] = "sum:", misfit[] = "misfit:";
   *goal = (FemGoal){0};
-  if (strncmp(text, sum, strlen(sum)) == 0) return read_file(model, text + strlen(sum), goal);
+  if (strncmp(text, sum, strlen(sum)) == 0) return read_file(model, text + strlen(sum), at, goal);
   goal->is_misfit = strncmp(text, misfit, strlen(misfit)) == 0;
-  if (goal->is_misfit) return read_file(model, text + strlen(misfit), goal);
+  if (goal->is_misfit) return read_file(model, text + strlen(misfit), at, goal);
   goal->terms = memory_zeroed(1, sizeof *goal->terms);
   if (!goal->terms) return status_no_memory("a quantity");
   goal->term_count = 1;
   goal->terms->weight = 1;
-  return app_gradient_read_quantity(model, text, &goal->terms->quantity);
+  return read_one(model, text, at, goal->terms);
 }
 
 void app_gradient_destroy_goal(FemGoal *goal) {

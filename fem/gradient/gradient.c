@@ -146,20 +146,27 @@ static Status solve_goal(Adjoint *adjoint, int g, double *factors, FemGradient *
   const FemNumbering *numbering = &adjoint->equilibrium.system->numbering;
   size_t values = values_of(adjoint);
   double *slope = adjoint->slopes + values * (size_t)g, *all = adjoint->multipliers + values * (size_t)g;
+  double residual, mismatch;
   TRY(fem_goal_evaluate(&adjoint->def->goals[g], &adjoint->tangent, &gradient->values[g], slope, factors));
   for (int i = 0; i < adjoint->count; i++) adjoint->right[i] = slope[numbering->dof_of_unknown[i]];
-  TRY(solve(adjoint, &gradient->residuals[g]));
+  TRY(solve(adjoint, &residual));
   for (int i = 0; i < adjoint->count; i++) all[numbering->dof_of_unknown[i]] = adjoint->lambda[i];
-  TRY(compare(adjoint, &gradient->mismatches[g]));
+  TRY(compare(adjoint, &mismatch));
+  gradient->residuals[g] = fmax(gradient->residuals[g], residual);
+  gradient->mismatches[g] = fmax(gradient->mismatches[g], mismatch);
   TRY(fem_tangent_multiply(&adjoint->tangent, all, adjoint->change.product));
   for (size_t i = 0; i < values; i++) slope[i] -= adjoint->change.product[i];
   return STATUS_OK;
 }
 
+static bool is_due(const Adjoint *adjoint, int g) {
+  return fem_goal_is_due(&adjoint->def->goals[g], adjoint->equilibrium.system->model, adjoint->state.time);
+}
+
 static Status solve_goals(Adjoint *adjoint, FemGradient *gradient) {
   double *factors = adjoint->factors;
   for (int g = 0; g < adjoint->def->goal_count; g++) {
-    TRY(solve_goal(adjoint, g, factors, gradient));
+    if (is_due(adjoint, g)) TRY(solve_goal(adjoint, g, factors, gradient));
     factors += adjoint->def->goals[g].term_count;
   }
   return STATUS_OK;
@@ -178,7 +185,7 @@ static Status differentiate(Adjoint *adjoint, int p, FemGradient *gradient) {
     double sum;
     TRY(fem_goal_change(&def->goals[g], &adjoint->tangent, factors, change, &sum));
     for (size_t i = 0; i < values; i++) sum += lambda[i] * change->force[i] + slope[i] * change->motion[i];
-    gradient->derivatives[g * def->parameter_count + p] = sum;
+    gradient->derivatives[g * def->parameter_count + p] += sum;
     factors += def->goals[g].term_count;
   }
   return STATUS_OK;
@@ -192,7 +199,7 @@ static Status find(FemGradient *gradient, Adjoint *adjoint) {
   TRY(settle(adjoint, time, &left));
   TRY(fem_equilibrium_forces(equilibrium, time, adjoint->u, adjoint->force));
   double largest = fem_equilibrium_largest(system->forces, 3 * system->model->vertex_count);
-  gradient->unbalanced = largest > 0 ? left / largest : 0;
+  gradient->unbalanced = fmax(gradient->unbalanced, largest > 0 ? left / largest : 0);
   TRY(fem_equilibrium_factorise(equilibrium, time, adjoint->u, 0));
   TRY(fem_tangent_create(&adjoint->tangent, system, &adjoint->state));
   TRY(fem_change_create(&adjoint->change, &adjoint->tangent));
@@ -266,7 +273,7 @@ Status fem_gradient_create(FemGradient *gradient, const FemGradientDef *def) {
 }
 
 Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGradientDef *def) {
-  TRY(fem_gradient_create(gradient, def));
+  if (!gradient->values) TRY(fem_gradient_create(gradient, def));
   TRY(fem_gradient_check(system->model, def));
   if (!system->model->scene->is_static)
     return status_fail(STATUS_INPUT, "the scene moves: it ends in no equilibrium");
@@ -276,6 +283,7 @@ Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGrad
   Adjoint adjoint;
   Status status = create(&adjoint, system, def);
   if (!status) status = find(gradient, &adjoint);
+  gradient->time = system->accepted.time;
   destroy(&adjoint);
   if (status != STATUS_RETRY) return status;
   char why[512];

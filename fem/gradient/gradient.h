@@ -20,6 +20,7 @@ typedef struct FemGradientDef {
 } FemGradientDef;
 
 typedef struct FemGradient {
+  double time;        // of the latest state that it was found at [s]
   double unbalanced;  // largest force on an unknown, as a share of the largest on a vertex
   long long switches; // of a path, of vertices between sticking and slipping from step to step
   double *values;     // g, owned                                            (goal_count)
@@ -34,9 +35,9 @@ bool fem_gradient_has_friction(const FemModel *model);
 
 // STATUS_INPUT: what cannot be differentiated in this scene; the message says what and why.
 Status fem_gradient_check(const FemModel *model, const FemGradientDef *def);
-// At the system's accepted state, which stays; the equilibrium is found more exactly first. STATUS_SOLVER: K
-// is not positive definite, so that the equilibrium is no stable one. Destroy the gradient also after a
-// failure.
+// Adds what is taken at the system's accepted state, which stays, to a zeroed gradient or to what earlier
+// states gave; the equilibrium is found more exactly first. STATUS_SOLVER: K is not positive definite, so
+// that the equilibrium is no stable one. Destroy the gradient also after a failure.
 Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGradientDef *def);
 // Room for the results, all 0.
 Status fem_gradient_create(FemGradient *gradient, const FemGradientDef *def);

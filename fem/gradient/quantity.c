@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/gradient/quantity.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/gravity.h"
+#include "fem/model/limits.h"
 
 // ---- What there is.
 
@@ -377,12 +379,23 @@ Status fem_quantity_change(const FemQuantity *quantity, const FemTangent *tangen
   return STATUS_OK;
 }
 
+bool fem_term_is_due(const FemTerm *term, const FemModel *model, double time) {
+  double end = model->scene->end;
+  return fabs(fmin(term->time, end) - time) <= FEM_TIME_RESOLUTION * end;
+}
+
+bool fem_goal_is_due(const FemGoal *goal, const FemModel *model, double time) {
+  for (int t = 0; t < goal->term_count; t++)
+    if (fem_term_is_due(&goal->terms[t], model, time)) return true;
+  return false;
+}
+
 Status fem_goal_evaluate(const FemGoal *goal, const FemTangent *tangent, double *value, double *slope,
                          double *factors) {
-  *value = 0;
   for (int t = 0; t < goal->term_count; t++) {
     const FemTerm *term = &goal->terms[t];
     double q;
+    if (!fem_term_is_due(term, tangent->system->model, tangent->state->time)) continue;
     factors[t] = term->weight;
     if (goal->is_misfit) {
       TRY(fem_quantity_evaluate(&term->quantity, tangent, 0, &q, NULL));
@@ -399,6 +412,7 @@ Status fem_goal_change(const FemGoal *goal, const FemTangent *tangent, const dou
   *derivative = 0;
   for (int t = 0; t < goal->term_count; t++) {
     double own;
+    if (!fem_term_is_due(&goal->terms[t], tangent->system->model, tangent->state->time)) continue;
     TRY(fem_quantity_change(&goal->terms[t].quantity, tangent, change, &own));
     *derivative += factors[t] * own;
   }

@@ -31,6 +31,7 @@ typedef struct FemQuantity {
 typedef struct FemTerm {
   FemQuantity quantity;
   double weight, data;
+  double time; // when q is taken [s]; that of the run's end, or later: there
 } FemTerm;
 
 // g = Σ weight q, or as a misfit g = ½ Σ weight (q − data)².
@@ -53,7 +54,11 @@ Status fem_quantity_evaluate(const FemQuantity *quantity, const FemTangent *tang
 Status fem_quantity_change(const FemQuantity *quantity, const FemTangent *tangent, FemChange *change,
                            double *derivative);
 
-// g, and its derivative by all positions; `factors` ∂g/∂q of each term (term_count).
+// Whether it is taken at that time, but for rounding; of a goal, one of its terms.
+bool fem_term_is_due(const FemTerm *term, const FemModel *model, double time);
+bool fem_goal_is_due(const FemGoal *goal, const FemModel *model, double time);
+// What the terms at the state's time give: added to g and to its derivative by all positions; `factors` ∂g/∂q
+// of each of them (term_count).
 Status fem_goal_evaluate(const FemGoal *goal, const FemTangent *tangent, double *value, double *slope,
                          double *factors);
 Status fem_goal_change(const FemGoal *goal, const FemTangent *tangent, const double *factors,

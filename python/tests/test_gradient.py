@@ -41,6 +41,18 @@ class Gradient(unittest.TestCase):
         self.assertEqual(found["derivative"].shape, (1, 1))
         self.assertEqual(found["parameter"][0], 2000)
 
+    def test_quantities_at_earlier_times(self):
+        of = ["force:ground:block:z@0.5", "force:ground:block:z"]
+        moved = {**SCENE, "effects": {}, "obstacles": [{**SCENE["obstacles"][0], "motion": {"velocity": [0, 0, 1e-3]}}]}
+        moved["bodies"] = [{**SCENE["bodies"][0], "fixed": [{"group": "z_max"}]}]
+        both = tetlap.gradient(moved, of, YOUNG)
+        early = tetlap.gradient(moved, of, YOUNG, at=0.75)
+        np.testing.assert_allclose(early["value"][0], both["value"][0], rtol=1e-9)
+        np.testing.assert_allclose(early["derivative"][0], both["derivative"][0], rtol=1e-9)
+        self.assertTrue(abs(both["value"][0]) < abs(early["value"][1]) < abs(both["value"][1]))
+        with self.assertRaisesRegex(tetlap.RunError, "not within the run"):
+            tetlap.gradient(moved, of, YOUNG, at=2)
+
     def test_what_has_no_gradient_says_why(self):
         ball = {"name": "ball", "sphere": {"centre": [0, 0, -1], "radius": 1}}
         with self.assertRaisesRegex(tetlap.RunError, "friction on a sphere"):
@@ -69,6 +81,7 @@ class Torch(unittest.TestCase):
         self.assertAlmostEqual(density.grad.item(), 2 * weight * weight / 1000, delta=1e-9 * weight * weight)
         self.assertEqual(young.grad.dtype, torch.float32)
         self.assertLess(abs(young.grad.item()), 1e-9)
+        self.assertEqual(tetlap.torch.run(SCENE, {YOUNG: young}, "force:block:z", at=0.5).shape, (1,))
 
     def test_gradcheck(self):
         torch = self.torch

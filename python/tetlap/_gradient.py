@@ -64,12 +64,14 @@ def _arrays(found, of, by):
     }
 
 
-def gradient(scene: Scene, of: str | list[str], by: str | list[str], *, set: Settings = None, total: bool = False) -> dict:  # noqa: A002
-    """Runs a static scene or a motion to its end; what quantities are there, and their
-    exact derivatives, as a dict of arrays.
+def gradient(scene: Scene, of: str | list[str], by: str | list[str], *, set: Settings = None, total: bool = False,  # noqa: A002
+             at: float | None = None) -> dict:
+    """Runs a static scene or a motion; what quantities are at its end or at other times, and
+    their exact derivatives, as a dict of arrays.
 
     scene: a scene file's path, or a dict with the same keys (docs/scene.md). Nothing is written.
-    of: a quantity, "force:ball:ground:z", or a list of them (docs/gradients.md).
+    of: a quantity, "force:ball:ground:z", "force:ball:ground:z@0.02" at a time, or a list of them (docs/gradients.md).
+    at: the time [s] of quantities that name none; None: the run's end.
     by: a parameter's key, "bodies.ground.material.young", or a list of them.
     set: as of `tetlap.run`.
     total: a contact stiffness that the scene does not give changes with E and ν as it is chosen from them; else it is kept.
@@ -88,6 +90,8 @@ def gradient(scene: Scene, of: str | list[str], by: str | list[str], *, set: Set
         command += ["--of", name]
     for text in override_texts(set):
         command += ["--set", text]
+    if at is not None:
+        command += ["--at", repr(float(at))]
     try:
         return _arrays(_execute(command + ["--total"] * bool(total)), of, by)
     finally:

@@ -116,9 +116,9 @@ class _Run(torch.autograd.Function):
     """Quantities of a run, which keep their derivatives for the way back."""
 
     @staticmethod
-    def forward(ctx, scene, keys, of, overrides, *values):
+    def forward(ctx, scene, keys, of, overrides, at, *values):
         of_values = [f"{key}={float(value)!r}" for key, value in zip(keys, values)]
-        found = _gradient_of_arrays(scene, of, keys, set=overrides + of_values, total=True)
+        found = _gradient_of_arrays(scene, of, keys, set=overrides + of_values, total=True, at=at)
         if found["contact_stiffness"] == "follows":
             _warn_of_choice(keys)
         ctx.derivative, ctx.dtypes = torch.from_numpy(found["derivative"]), [value.dtype for value in values]
@@ -128,7 +128,7 @@ class _Run(torch.autograd.Function):
     @torch.autograd.function.once_differentiable
     def backward(ctx, from_values):
         by_keys = from_values @ ctx.derivative
-        return None, None, None, None, *(value.to(dtype) for value, dtype in zip(by_keys, ctx.dtypes))
+        return None, None, None, None, None, *(value.to(dtype) for value, dtype in zip(by_keys, ctx.dtypes))
 
 
 def _warn_of_choice(keys):
@@ -148,8 +148,9 @@ def _check_parameters(parameters):
             raise ValueError(f"{key} is a tensor of shape {tuple(value.shape)} on {value.device}; expected one number on the CPU")
 
 
-def run(scene: Scene, parameters: Mapping[str, torch.Tensor], of: str | list[str], *, set: Settings = None) -> torch.Tensor:  # noqa: A002
-    """The quantities `of` (a list as of tetlap.gradient) at the end of a scene's run, a tensor (of) in float64.
+def run(scene: Scene, parameters: Mapping[str, torch.Tensor], of: str | list[str], *, set: Settings = None,  # noqa: A002
+        at: float | None = None) -> torch.Tensor:
+    """The quantities `of`, at the times that they name or `at` one (as of tetlap.gradient), a tensor (of) in float64.
 
     parameters: {key of the scene: tensor of one number}; they replace the scene's values. Differentiable once by all of them. A
     contact stiffness that the scene does not give follows E and ν.
@@ -158,4 +159,4 @@ def run(scene: Scene, parameters: Mapping[str, torch.Tensor], of: str | list[str
     """
     _check_parameters(parameters)
     keys = list(parameters)
-    return _Run.apply(scene, keys, of, override_texts(set), *parameters.values())
+    return _Run.apply(scene, keys, of, override_texts(set), at, *parameters.values())

@@ -9,6 +9,7 @@
 #include "app/command/commands.h"
 #include "app/gradient/goal.h"
 #include "app/gradient/parameter.h"
+#include "app/gradient/run.h"
 #include "app/job/job.h"
 #include "app/table/table.h"
 #include "base/log.h"
@@ -19,6 +20,7 @@ typedef struct Options {
   AppJobOptions job;
   const char *of[MAX_GOALS], *by[MAX_PARAMETERS];
   int of_count, by_count;
+  double at; // 0: the run's end
   bool is_total;
 } Options;
 
@@ -26,7 +28,7 @@ static const AppOption option_table[] = {
     {"of", 0, "QUANTITY",
      "Differentiate it: displacement:BODY:AXIS, probe:NAME:AXIS, position:BODY:VERTEX:AXIS, "
      "force:BODY[:OTHER]:AXIS, moment:BODY[:OTHER]:AXIS, reaction:BODY:fixed[N]:AXIS, energy[:KIND], "
-     "sum:FILE, misfit:FILE; may be repeated",
+     "sum:FILE, misfit:FILE; may be repeated. QUANTITY@TIME: at that time [s]",
      1, CLI_REPEATED, CLI_TO(Options, of), .most = MAX_GOALS, .example = "--of",
      .count_offset = offsetof(Options, of_count)},
     {"by", 0, "KEY,...",
@@ -36,6 +38,8 @@ static const AppOption option_table[] = {
      "docs/gradients.md lists them",
      1, CLI_LIST, CLI_TO(Options, by), .most = MAX_PARAMETERS, .example = "contact.stiffness",
      .count_offset = offsetof(Options, by_count)},
+    {"at", 0, "TIME", "Take quantities at this time [s] that name none (default: the run's end)", 1,
+     CLI_POSITIVE, CLI_TO(Options, at)},
     {"total", 0, NULL,
      "Let a contact stiffness that the scene does not give change with E and ν as it is chosen from them "
      "(default: it is kept)",
@@ -75,11 +79,18 @@ static bool is_path(const FemModel *model) {
   return !model->scene->is_static || fem_gradient_has_friction(model);
 }
 
+// Whether a goal is, at a state that was not seen before.
+static bool is_taken(const Asked *asked, const FemRunProgress *progress) {
+  bool is_due = false;
+  for (int g = 0; g < asked->def.goal_count; g++)
+    is_due = is_due || fem_goal_is_due(&asked->goals[g], progress->system->model, progress->time);
+  return is_due && progress->time > asked->gradient.time;
+}
+
 static Status at_step(void *observer, const FemRunProgress *progress) {
   Asked *asked = observer;
   if (is_path(progress->system->model)) return fem_replay_steps_add(&asked->steps, progress->system);
-  if (progress->time < progress->end) return STATUS_OK;
-  fem_gradient_destroy(&asked->gradient);
+  if (!is_taken(asked, progress)) return STATUS_OK;
   return fem_gradient_find(&asked->gradient, progress->system, &asked->def);
 }
 
@@ -165,13 +176,14 @@ static Status print_json(const Options *options, const FemModel *model, const As
 
 // All that can be refused is refused before the run.
 static Status prepare(const Options *options, const FemModel *model, Asked *asked) {
+  double at = options->at > 0 ? options->at : INFINITY;
   asked->def = (FemGradientDef){.goals = asked->goals,
                                 .parameters = asked->parameters,
                                 .goal_count = options->of_count,
                                 .parameter_count = options->by_count,
                                 .follows_choice = options->is_total};
   for (int g = 0; g < options->of_count; g++)
-    TRY(status_prefix(app_gradient_read_goal(model, options->of[g], &asked->goals[g]), "--of"));
+    TRY(status_prefix(app_gradient_read_goal(model, options->of[g], at, &asked->goals[g]), "--of"));
   for (int p = 0; p < options->by_count; p++)
     TRY(status_prefix(app_gradient_read_parameter(model, options->by[p], &asked->parameters[p]), "--by"));
   TRY(fem_gradient_check(model, &asked->def));
@@ -183,7 +195,7 @@ static Status differentiate(const Options *options, const FemModel *model) {
   FemRunResult result = {0};
   FemRunOptions run = {.observe = at_step, .observer = &asked, .stop = app_job_stop_flag()};
   Status status = prepare(options, model, &asked);
-  if (!status) status = fem_run(model, &run, &result);
+  if (!status) status = app_gradient_run(model, &asked.def, &run, &result);
   if (!status && is_path(model))
     status = fem_path_differentiate(&asked.gradient, model, &asked.def, &asked.steps);
   if (!status && !asked.gradient.derivatives)
@@ -218,14 +230,14 @@ static int run_command(int argument_count, char **arguments) {
 
 const AppCommand app_command_gradient = {
     .name = "gradient",
-    .help = "derivatives of what a scene ends with by its parameters",
+    .help = "derivatives of what a scene gives by its parameters",
     .options = option_table,
     .arguments = &(const AppArguments){"SCENE", offsetof(Options, job.scene_path), 1,
                                        .missing = "name a scene file, as in examples/26_hertz.yaml",
                                        .excess = "one scene at a time; '%s' is the second"},
-    .doc = "Run a static scene or a motion to its end, and "
-           "print the exact derivatives of quantities g "
-           "there by parameters p, from one solve for each g.\vThe share p dg/dp / g says by how many per "
+    .doc = "Run a static scene or a motion, and print the exact derivatives of quantities g, at its end or "
+           "at other times, by parameters p, from one solve for each g.\vThe share p dg/dp / g says by how "
+           "many per "
            "cent g "
            "changes with one per cent of p. Everything else is kept. docs/gradients.md says what has a "
            "gradient.",

@@ -158,6 +158,9 @@ static Status multiply(void *self, const double *x, double *y) {
 
 static Status solve(Sweep *sweep, double *beta, double *residual) {
   double whole = 0, left = 0;
+  *residual = 0;
+  memset(beta, 0, (size_t)sweep->replay.n * sizeof *beta);
+  if (fem_equilibrium_largest(sweep->right, sweep->replay.n) == 0) return STATUS_OK; // behind all terms
   if (!sweep->replay.is_exact)
     return fem_krylov_solve(&sweep->krylov, sweep->right, RESIDUAL, beta, residual);
   TRY(fem_equilibrium_solve(&sweep->replay.equilibrium, sweep->right, beta));
@@ -166,7 +169,7 @@ static Status solve(Sweep *sweep, double *beta, double *residual) {
     left += (sweep->right[i] - sweep->product[i]) * (sweep->right[i] - sweep->product[i]);
     whole += sweep->right[i] * sweep->right[i];
   }
-  *residual = whole == 0 ? 0 : sqrt(left / whole);
+  *residual = sqrt(left / whole);
   return STATUS_OK;
 }
 
@@ -174,10 +177,10 @@ static bool is_last(const Sweep *sweep) {
   return sweep->step == sweep->replay.steps->count - 1;
 }
 
-// ∂g/∂x of a goal at the step, at fixed velocities; its own only where it is found: at the last one.
+// ∂g/∂x of a goal at the step, at fixed velocities; its own only where it is taken.
 static double slope_at(const Sweep *sweep, int g, size_t dof) {
   const Behind *behind = &sweep->behind[g];
-  double slope = is_last(sweep) ? sweep->slope[values_of(sweep) * (size_t)g + dof] : 0;
+  double slope = sweep->slope[values_of(sweep) * (size_t)g + dof];
   if (is_damped(sweep)) slope += behind->damping.now[dof];
   return has_friction(sweep) ? slope + behind->places[dof] + behind->friction.now[dof] : slope;
 }
@@ -255,7 +258,7 @@ static Status add_step(Sweep *sweep, FemChange *change, int p, FemGradient *grad
   for (int g = 0; g < def->goal_count; g++) {
     Behind *behind = &sweep->behind[g];
     double sum = 0;
-    if (is_last(sweep)) TRY(fem_goal_change(&def->goals[g], &sweep->tangent, factors, change, &sum));
+    TRY(fem_goal_change(&def->goals[g], &sweep->tangent, factors, change, &sum));
     factors += def->goals[g].term_count;
     spread(sweep, of_step(sweep, behind->beta, sweep->step), sweep->step > 0 ? -1 : 0);
     TRY(fem_tangent_multiply(&sweep->tangent, sweep->lambda, sweep->weight));
@@ -296,6 +299,7 @@ static Status hand_back(Sweep *sweep, Behind *behind) {
 
 static Status evaluate_goals(Sweep *sweep, FemGradient *gradient) {
   double *factors = sweep->factors;
+  memset(sweep->slope, 0, (size_t)sweep->def->goal_count * values_of(sweep) * sizeof(double));
   for (int g = 0; g < sweep->def->goal_count; g++) {
     sweep->tangent.friction = has_friction(sweep) ? &sweep->behind[g].friction : NULL;
     sweep->tangent.damping = &sweep->behind[g].damping;
@@ -324,7 +328,7 @@ static Status go_back_with(Sweep *sweep, FemGradient *gradient) {
   for (int g = 0; g < sweep->def->goal_count; g++)
     fem_damping_begin(&sweep->behind[g].damping, &sweep->replay.state);
   TRY(begin_friction(sweep));
-  if (is_last(sweep)) TRY(evaluate_goals(sweep, gradient));
+  TRY(evaluate_goals(sweep, gradient));
   for (int g = 0; g < sweep->def->goal_count && sweep->step > 0; g++)
     TRY(solve_step(sweep, g, &gradient->residuals[g]));
   TRY(add_parameters(sweep, gradient));
@@ -445,6 +449,23 @@ Status fem_path_check(const FemModel *model, const FemGradientDef *def) {
   return check_friction(model, def);
 }
 
+static bool has_step(const FemReplaySteps *steps, const FemModel *model, const FemTerm *term) {
+  for (int k = 1; k < steps->count; k++)
+    if (fem_term_is_due(term, model, steps->times[k])) return true;
+  return false;
+}
+
+static Status check_times(const FemModel *model, const FemGradientDef *def, const FemReplaySteps *steps) {
+  for (int g = 0; g < def->goal_count; g++)
+    for (int t = 0; t < def->goals[g].term_count; t++) {
+      const FemTerm *term = &def->goals[g].terms[t];
+      if (!has_step(steps, model, term))
+        return status_fail(STATUS_INPUT, "no step of the run ends at t = %.9g s",
+                           fmin(term->time, model->scene->end));
+    }
+  return STATUS_OK;
+}
+
 Status fem_path_differentiate(FemGradient *gradient, const FemModel *model, const FemGradientDef *def,
                               const FemReplaySteps *steps) {
   TRY(fem_gradient_create(gradient, def));
@@ -452,6 +473,7 @@ Status fem_path_differentiate(FemGradient *gradient, const FemModel *model, cons
   TRY(fem_path_check(model, def));
   for (int g = 0; g < def->goal_count; g++) gradient->mismatches[g] = NAN;
   if (steps->count < 2) return status_fail(STATUS_INPUT, "the run made no step");
+  TRY(check_times(model, def, steps));
   Sweep sweep;
   Status status = create(&sweep, model, def, steps);
   if (!status) status = replay_and_return(&sweep, gradient);

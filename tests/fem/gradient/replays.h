@@ -5,6 +5,7 @@
 
 #include "app/gradient/goal.h"
 #include "app/gradient/parameter.h"
+#include "app/gradient/run.h"
 #include "fem/gradient/path/path.h"
 #include "static_solve.h"
 
@@ -40,10 +41,16 @@ static inline Status record(void *observer, const FemRunProgress *progress) {
 // The steps of the scene as it is.
 static inline void find_steps(const Asked *asked, FemReplaySteps *steps) {
   SceneRun scene;
+  FemGoal goals[MOST];
+  int count = 0;
   *steps = (FemReplaySteps){0};
   scene_open(&scene, asked->scene, (const char *const[]){asked->setting, NULL});
+  for (const char *const *of = asked->of; *of; of++)
+    ck_assert_ok(app_gradient_read_goal(&scene.model, *of, INFINITY, &goals[count++]));
   FemRunOptions options = {.observe = record, .observer = steps};
-  ck_assert_ok(fem_run(&scene.model, &options, &scene.result));
+  ck_assert_ok(app_gradient_run(&scene.model, &(FemGradientDef){.goals = goals, .goal_count = count},
+                                &options, &scene.result));
+  for (int g = 0; g < count; g++) app_gradient_destroy_goal(&goals[g]);
   scene_close(&scene);
 }
 
@@ -53,7 +60,7 @@ static inline void replay(const Asked *asked, const FemReplaySteps *steps, const
   *answer = (Answer){0};
   scene_open(&scene, asked->scene, (const char *const[]){asked->setting, override, NULL});
   for (const char *const *of = asked->of; *of; of++)
-    ck_assert_ok(app_gradient_read_goal(&scene.model, *of, &answer->goals[answer->goal_count++]));
+    ck_assert_ok(app_gradient_read_goal(&scene.model, *of, INFINITY, &answer->goals[answer->goal_count++]));
   for (const char *const *by = asked->by; *by && with_parameters; by++) {
     FemParameter *parameter = &answer->parameters[answer->parameter_count];
     ck_assert_ok(app_gradient_read_parameter(&scene.model, *by, parameter));

@@ -4,6 +4,7 @@
 
 #include "app/gradient/goal.h"
 #include "app/gradient/parameter.h"
+#include "app/gradient/run.h"
 #include "fem/gradient/path/krylov.h"
 #include "folder.h"
 #include "static_solve.h"
@@ -31,8 +32,10 @@ typedef struct Answer {
 
 static Status at_end(void *observer, const FemRunProgress *progress) {
   Answer *answer = observer;
-  if (progress->time < progress->end) return STATUS_OK;
-  fem_gradient_destroy(&answer->gradient);
+  bool is_due = false;
+  for (int g = 0; g < answer->goal_count; g++)
+    is_due = is_due || fem_goal_is_due(&answer->goals[g], progress->system->model, progress->time);
+  if (!is_due || progress->time <= answer->gradient.time) return STATUS_OK;
   answer->is_done = true;
   return fem_gradient_find(&answer->gradient, progress->system, &answer->def);
 }
@@ -44,7 +47,7 @@ static void destroy(Answer *answer) {
 
 static Status read_words(const Asked *asked, const FemModel *model, Answer *answer) {
   for (const char *const *of = asked->of; *of; of++)
-    TRY(app_gradient_read_goal(model, *of, &answer->goals[answer->goal_count++]));
+    TRY(app_gradient_read_goal(model, *of, INFINITY, &answer->goals[answer->goal_count++]));
   for (const char *const *by = asked->by; *by; by++) {
     FemParameter *parameter = &answer->parameters[answer->parameter_count];
     TRY(app_gradient_read_parameter(model, *by, parameter));
@@ -67,7 +70,7 @@ static Status run(const Asked *asked, const char *override, Answer *answer) {
     scene_open(&scene, asked->scene, override ? (const char *const[]){override, NULL} : NULL);
   FemRunOptions options = {.observe = at_end, .observer = answer};
   Status status = read_words(asked, &scene.model, answer);
-  if (!status) status = fem_run(&scene.model, &options, &scene.result);
+  if (!status) status = app_gradient_run(&scene.model, &answer->def, &options, &scene.result);
   scene_close(&scene);
   return status;
 }
@@ -237,6 +240,34 @@ START_TEST(sums_and_misfits_are_those_of_their_terms) {
 }
 END_TEST
 
+START_TEST(goals_at_earlier_times_agree_with_differences_of_runs) {
+  char misfit[256];
+  write_file("path.csv", "force:upper:lower:z@0.4, 1e-6, 1000\nforce:upper:lower:z@0.7, 1e-6, 1000\n", misfit,
+             "misfit");
+  const Asked asked = {
+      .scene = "gradient_blocks",
+      .of = {"displacement:upper:z@0.4", "reaction:lower:fixed[0]:z@0.7", "energy", misfit},
+      .by = {"bodies.lower.material.young", "bodies.upper.material.density", "contact.stiffness"}};
+  check_against_runs(&asked);
+}
+END_TEST
+
+START_TEST(a_run_with_goals_ends_at_the_last_of_them) {
+  const Asked alone = {.scene = "gradient_blocks", .of = {"energy@0.4"}, .by = {"contact.stiffness"}};
+  const Asked both = {
+      .scene = "gradient_blocks", .of = {"energy@0.4", "energy"}, .by = {"contact.stiffness"}};
+  Answer early, late;
+  ck_assert_ok(run(&alone, NULL, &early));
+  ck_assert_ok(run(&both, NULL, &late));
+  ck_assert_near(early.gradient.time, 0.4, 1e-12);
+  ck_assert_near(late.gradient.time, 1, 1e-12);
+  ck_assert_near(late.gradient.values[0], early.gradient.values[0], 1e-12 * early.gradient.values[0]);
+  ck_assert_double_gt(fabs(late.gradient.values[1] / late.gradient.values[0] - 1), 1e-3);
+  destroy(&early);
+  destroy(&late);
+}
+END_TEST
+
 // ---- What does not act.
 
 static void expect_idle(const char *scene, const char *key, const char *why) {
@@ -344,6 +375,9 @@ START_TEST(quantities_that_are_not_there_are_refused_by_name) {
                                          {"reaction:block:fixed[1]:z", "has 1 such entries"},
                                          {"reaction:block:glued[0]:z", "not fixed[N]"},
                                          {"energy:kinetic", "none of the quantities"},
+                                         {"displacement:block:z@soon", "'@soon' is no time"},
+                                         {"displacement:block:z@-1", "not within the run"},
+                                         {"displacement:block:z@1.01", "time.end = 1 s"},
                                          {"energy:gravity", "no effects.gravity"}};
   char text[2048];
   write_block(text, STATIC, NU, "", "stiffness: 1e6");
@@ -418,6 +452,8 @@ int main(void) {
   tcase_add_test(test_case, a_chosen_stiffness_that_follows_agrees_with_differences_of_runs);
   tcase_add_test(test_case, a_chosen_stiffness_that_is_kept_is_another_derivative);
   tcase_add_test(test_case, sums_and_misfits_are_those_of_their_terms);
+  tcase_add_test(test_case, goals_at_earlier_times_agree_with_differences_of_runs);
+  tcase_add_test(test_case, a_run_with_goals_ends_at_the_last_of_them);
   tcase_add_test(test_case, what_does_not_act_has_the_derivative_0_and_a_reason);
   tcase_add_test(test_case, what_has_no_gradient_is_refused_by_name);
   tcase_add_test(test_case, parameters_without_a_derivative_are_refused_by_name);

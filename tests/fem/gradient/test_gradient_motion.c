@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "fem/gradient/damping.h"
+#include "folder.h"
 #include "replays.h"
 
 START_TEST(a_block_thrown_upon_a_shaken_one_agrees_with_differences_of_replays) {
@@ -24,6 +25,25 @@ START_TEST(a_motion_that_ends_in_contact_agrees_with_differences_of_replays) {
       .tolerance = 1e-5,
       .of = {"force:upper:lower:z", "displacement:upper:z", "energy"},
       .by = {"bodies.lower.material.young", "bodies.upper.velocity[2]", "contact.stiffness"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
+// Of a path, and of a misfit to it, whose terms meet on the way back.
+START_TEST(goals_at_earlier_times_agree_with_differences_of_replays) {
+  char misfit[256];
+  snprintf(misfit, sizeof misfit, "misfit:%s/path.csv", folder);
+  FILE *file = fopen(misfit + strlen("misfit:"), "w");
+  ck_assert_ptr_nonnull(file);
+  fputs("position:upper:3:x@0.02, 1e4, 0.03\nposition:upper:3:x@0.04, 1e4, 0.04\ndisplacement:upper:z, 1e4, "
+        "0\n",
+        file);
+  ck_assert_int_eq(fclose(file), 0);
+  const Asked asked = {.scene = "gradient_motion",
+                       .setting = "time.end=0.06",
+                       .of = {"displacement:upper:z@0.0325", "reaction:lower:driven[0]:z@0.05", misfit},
+                       .by = {"bodies.lower.material.young", "bodies.upper.material.density",
+                              "bodies.upper.velocity[2]", "bodies.lower.driven[0].amplitude[2]"}};
   check_against_replays(&asked);
 }
 END_TEST
@@ -158,7 +178,9 @@ END_TEST
 
 int main(void) {
   TCase *test_case = tcase_create("gradient_motion");
+  tcase_add_checked_fixture(test_case, folder_make, folder_remove);
   tcase_add_test(test_case, a_block_thrown_upon_a_shaken_one_agrees_with_differences_of_replays);
+  tcase_add_test(test_case, goals_at_earlier_times_agree_with_differences_of_replays);
   tcase_add_test(test_case, a_block_of_two_materials_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_motion_that_ends_in_contact_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_damped_block_thrown_upon_another_agrees_with_differences_of_replays);
