@@ -199,7 +199,7 @@ void contact_system_start_over(ContactSystem *system) {
 
 // Whether pairs that are known to stay apart need not be asked for.
 static bool evaluates_near(const ContactSystem *system) {
-  return system->layout.def.model->ops->is_zero_apart;
+  return !overlap_model_has_ghosts(system->layout.def.model);
 }
 
 static Status update(ContactSystem *system, double time, const double *positions, const double *velocities,

@@ -109,12 +109,16 @@ void overlap_model_destroy(OverlapModel *model) {
   *model = (OverlapModel){0};
 }
 
-// x − x is 0 for finite x, else NaN. Eight sums that a compiler keeps side by side.
+// A finite sum has finite terms; one that is not may have overflowed. Eight sums do not wait for each other.
 static inline bool is_finite(const double pair[OVERLAP_PAIR_SIZE]) {
   double sum[8] = {0};
-  for (int i = 0; i < OVERLAP_PAIR_SIZE; i++) sum[i % 8] += pair[i] - pair[i];
-  for (int i = 0; i < 4; i++) sum[i] += sum[i + 4];
-  return sum[0] + sum[1] + sum[2] + sum[3] == 0;
+  for (int i = 0; i < OVERLAP_PAIR_SIZE; i += 8)
+    for (int k = 0; k < 8; k++) sum[k] += pair[i + k];
+  for (int k = 0; k < 4; k++) sum[k] += sum[k + 4];
+  if (isfinite(sum[0] + sum[1] + (sum[2] + sum[3]))) return true;
+  bool are_finite = true;
+  for (int i = 0; i < OVERLAP_PAIR_SIZE; i++) are_finite &= isfinite(pair[i]);
+  return are_finite;
 }
 
 static Status fail_not_finite(int pair_index, const double pair[OVERLAP_PAIR_SIZE]) {

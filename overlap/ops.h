@@ -110,8 +110,6 @@ typedef struct OverlapOps {
   bool lacks_scale;
   // The shipped weights that it takes, where they go by another name than its own; NULL: no others.
   const char *weights;
-  // V is exactly 0 of every pair that is apart: such a pair need not be asked for.
-  bool is_zero_apart;
   // What OverlapPull asks for; NULL: it cannot. Pairs that it answers unasked have the slope 0.
   Status (*eval_pull)(const void *self, const OverlapPull *pull);
   // Whether it wants to know the origins of pairs; NULL: no.

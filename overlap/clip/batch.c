@@ -169,7 +169,6 @@ const OverlapOps overlap_clip_ops = {
     .eval_pair = eval_pair,
     .eval_batch = eval_batch,
     .checks_finite = true,
-    .is_zero_apart = true,
 };
 
 const OverlapOps overlap_clip32_ops = {

@@ -62,7 +62,6 @@ const OverlapOps overlap_clip_scalar_ops = {
     .has_hessian = overlap_ops_always,
     .has_centroid = overlap_ops_always,
     .rejects_disjoint = true,
-    .is_zero_apart = true,
     .seconds_per_pair = 5e-7,
     .eval_pair = eval_pair,
 };

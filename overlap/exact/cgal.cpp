@@ -220,7 +220,6 @@ extern "C" const OverlapOps overlap_cgal_ops = {
     false,              // checks_finite
     false,              // lacks_scale
     nullptr,            // weights
-    true,               // is_zero_apart
     nullptr,            // eval_pull
     nullptr,            // wants_origins
 };

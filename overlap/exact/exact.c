@@ -152,7 +152,6 @@ const OverlapOps overlap_exact_ops = {
     .name = "exact",
     .help = "exact rational arithmetic; every input, signs always right, values rounded once",
     .seconds_per_pair = 8e-6,
-    .is_zero_apart = true,
     .eval_pair = eval_pair,
     .has_centroid = overlap_ops_always,
 };

@@ -22,9 +22,8 @@ typedef struct Foreign {
   bool keeps_ghosts;
   pthread_mutex_t lock; // of all below, and of the port
   int *rows;            // of the batch: those that are asked for            (request.count)
-  double *most;         // the smaller tetrahedron's volume of a pair [m³]   (pair_count)
   double *clipped;      // V by clipping [m³]                                (pair_count)
-  size_t row_capacity, most_capacity, clipped_capacity;
+  size_t row_capacity, clipped_capacity;
   OverlapForeignRequest request;
 } Foreign;
 
@@ -37,7 +36,7 @@ static const unsigned PAIRS = 1u << OVERLAP_FOREIGN_PAIRS, VOLUME = 1u << OVERLA
 static void destroy(void *self) {
   Foreign *foreign = self;
   if (foreign->port.close) foreign->port.close(foreign->port.self);
-  memory_free(foreign->rows), memory_free(foreign->most), memory_free(foreign->clipped);
+  memory_free(foreign->rows), memory_free(foreign->clipped);
   overlap_foreign_request_destroy(&foreign->request);
   pthread_mutex_destroy(&foreign->lock);
   memory_free(foreign);
@@ -65,17 +64,18 @@ static bool wants_origins(const void *self) {
   return (((const Foreign *)self)->port.gives & TETLAP_MODEL_ORIGINS) != 0;
 }
 
-static double volume_of(const double tet[12]) {
-  return fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9))) / 6;
+static double determinant_of(const double tet[12]) {
+  return fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9)));
 }
 
 static double smaller_volume(const double pair[OVERLAP_PAIR_SIZE]) {
-  const double a = volume_of(pair), b = volume_of(pair + 12);
-  return a < b ? a : b;
+  const double a = determinant_of(pair), b = determinant_of(pair + 12);
+  return (a < b ? a : b) / 6;
 }
 
+// Whether what is flat or disjoint is its own business.
 static bool asks_for_all(const Foreign *foreign) {
-  return foreign->keeps_ghosts || foreign->port.gives & TETLAP_MODEL_DISJOINT;
+  return (foreign->port.gives & TETLAP_MODEL_DISJOINT) != 0;
 }
 
 // What clipping finds so much of, as a share of the smaller tetrahedron, does overlap.
@@ -83,20 +83,25 @@ static const double CERTAIN_SHARE = 1e-6;
 
 // Why a pair is not asked for: its flag; 0: it is asked for. `clipped`: V by clipping, NAN: not known. It
 // only saves time: the separating axes of a pair that overlaps take ten times as long.
-static unsigned answer_unasked(const Foreign *foreign, const double pair[OVERLAP_PAIR_SIZE], double most,
-                               double clipped) {
+static unsigned answer_unasked(const Foreign *foreign, const double pair[OVERLAP_PAIR_SIZE], double clipped) {
+  if (asks_for_all(foreign)) return 0;
+  const double most = smaller_volume(pair);
   if (!(most > 0)) return OVERLAP_FLAT;
-  if (asks_for_all(foreign) || clipped > CERTAIN_SHARE * most) return 0;
+  if (foreign->keeps_ghosts || clipped > CERTAIN_SHARE * most) return 0;
   return overlap_separation_pair(pair, 0) >= 0 ? OVERLAP_DISJOINT : 0;
 }
 
 static Status reserve(Foreign *foreign, int count, unsigned wanted) {
   const size_t size = (size_t)count;
   if (!memory_reserve((void **)&foreign->rows, &foreign->row_capacity, size, sizeof(int)) ||
-      !memory_reserve((void **)&foreign->most, &foreign->most_capacity, size, sizeof(double)) ||
       !memory_reserve((void **)&foreign->clipped, &foreign->clipped_capacity, size, sizeof(double)))
     return status_no_memory("pairs for a model");
   return overlap_foreign_request_reserve(&foreign->request, size, wanted);
+}
+
+static void start(Foreign *foreign) {
+  foreign->request.pairs = foreign->request.arrays[OVERLAP_FOREIGN_PAIRS];
+  foreign->request.count = 0;
 }
 
 static void append(Foreign *foreign, int row, const double pair[OVERLAP_PAIR_SIZE]) {
@@ -106,22 +111,30 @@ static void append(Foreign *foreign, int row, const double pair[OVERLAP_PAIR_SIZ
          OVERLAP_PAIR_SIZE * sizeof *pair);
 }
 
+// Without a copy: the coordinates are the batch's own.
+static void take_all(Foreign *foreign, const OverlapBatch *batch) {
+  foreign->request.pairs = batch->pairs;
+  foreign->request.count = (size_t)batch->pair_count;
+  for (int i = 0; i < batch->pair_count; i++) foreign->rows[i] = i;
+}
+
 static void choose(Foreign *foreign, const OverlapBatch *batch) {
   // Clipping refuses coordinates that the axes do not; then they decide alone.
   const bool is_clipped =
-      !asks_for_all(foreign) &&
+      !foreign->keeps_ghosts &&
       overlap_clip_ops.eval_batch(NULL, &(OverlapBatch){.pair_count = batch->pair_count,
                                                         .pairs = batch->pairs,
                                                         .volume = foreign->clipped}) == STATUS_OK;
-  foreign->request.count = 0;
+  start(foreign);
   for (int i = 0; i < batch->pair_count; i++) {
     unsigned flags = 0;
     const double *pair = batch->pairs + (size_t)i * OVERLAP_PAIR_SIZE;
     OverlapAnswer answer = overlap_ops_answer(batch, i, &flags);
-    overlap_ops_write_nothing(&answer);
-    foreign->most[i] = smaller_volume(pair);
-    *answer.flags = answer_unasked(foreign, pair, foreign->most[i], is_clipped ? foreign->clipped[i] : NAN);
-    if (!*answer.flags) append(foreign, i, pair);
+    *answer.flags = answer_unasked(foreign, pair, is_clipped ? foreign->clipped[i] : NAN);
+    if (*answer.flags)
+      overlap_ops_write_nothing(&answer);
+    else
+      append(foreign, i, pair);
   }
 }
 
@@ -159,8 +172,13 @@ static Status give(const Foreign *foreign, const OverlapBatch *batch, size_t at)
   double *const *arrays = foreign->request.arrays;
   const double volume = arrays[OVERLAP_FOREIGN_VOLUME][at];
   if (!isfinite(volume)) return fail_not_finite(foreign, i, "its volume");
-  if (volume < 0 || volume > foreign->most[i] * (1 + 1e-9)) *answer.flags |= OVERLAP_UNSOUND;
-  if (!(volume > 0)) return STATUS_OK;
+  *answer.flags = volume < 0 ? OVERLAP_UNSOUND : 0;
+  if (!(volume > 0)) {
+    overlap_ops_write_nothing(&answer);
+    return STATUS_OK;
+  }
+  if (volume > smaller_volume(batch->pairs + OVERLAP_PAIR_SIZE * (size_t)i) * (1 + 1e-9))
+    *answer.flags = OVERLAP_UNSOUND;
   *answer.volume = volume;
   if (answer.gradient) {
     if (!are_finite(24, arrays[OVERLAP_FOREIGN_GRADIENT] + 24 * at))
@@ -202,7 +220,10 @@ static Status eval(Foreign *foreign, const OverlapBatch *batch) {
   const unsigned wanted = PAIRS | VOLUME | (batch->gradient ? GRADIENT : 0) |
                           (batch->centroid ? CENTROID : 0) | (tells ? REST : 0);
   TRY(reserve(foreign, batch->pair_count, wanted));
-  choose(foreign, batch);
+  if (asks_for_all(foreign))
+    take_all(foreign, batch);
+  else
+    choose(foreign, batch);
   if (foreign->request.count == 0) return STATUS_OK;
   if (tells) tell_origins(foreign, &batch->origins);
   TRY(overlap_foreign_request_ask(&foreign->request, &foreign->port, foreign->name, wanted));
@@ -231,6 +252,7 @@ static Status eval_all(Foreign *foreign, int count, const double *pairs, double 
   const unsigned wanted = PAIRS | VOLUME | 1u << array;
   TRY(overlap_foreign_request_reserve(request, (size_t)count, wanted));
   memcpy(request->arrays[OVERLAP_FOREIGN_PAIRS], pairs, OVERLAP_PAIR_SIZE * bytes);
+  start(foreign);
   request->count = (size_t)count;
   TRY(overlap_foreign_request_ask(request, &foreign->port, foreign->name, wanted));
   memcpy(numbers, request->arrays[array], bytes);
@@ -267,10 +289,10 @@ static Status pull(Foreign *foreign, const OverlapPull *asked) {
                           (asked->by_gradient ? BY_GRADIENT : 0) | SLOPE;
   TRY(reserve(foreign, asked->pair_count, wanted));
   memset(asked->slope, 0, (size_t)asked->pair_count * SIZE * sizeof *asked->slope);
-  request->count = 0;
+  start(foreign);
   for (int i = 0; i < asked->pair_count; i++) {
     const double *pair = asked->pairs + SIZE * (size_t)i;
-    if (!answer_unasked(foreign, pair, smaller_volume(pair), NAN)) append(foreign, i, pair);
+    if (!answer_unasked(foreign, pair, NAN)) append(foreign, i, pair);
   }
   if (request->count == 0) return STATUS_OK;
   gather(foreign, 1, asked->by_volume, arrays[OVERLAP_FOREIGN_BY_VOLUME]);

@@ -3,13 +3,14 @@
 //
 // - A pair with a flat tetrahedron, and one whose tetrahedra share no volume, is answered by 0, unasked. The
 //   second by the separating axis theorem (overlap/separation.h), where clipping finds no volume; not where
-//   the model says that its V is 0 there as it stands (TETLAP_MODEL_DISJOINT), or where the options keep
-//   ghosts.
+//   the options keep ghosts. Neither where the model says that its V is 0 there as it stands
+//   (TETLAP_MODEL_DISJOINT).
 // - V below 0 becomes 0, its gradient too, and is flagged OVERLAP_UNSOUND; so is V above the smaller
 //   tetrahedron, which stays.
 // - A number that is not finite is an error that names the pair; so is one written beyond the end of an
 // array.
-// - It gets copies: what it does to the pairs it was given changes nothing of the caller's.
+// - It gets copies: what it does to the pairs it was given changes nothing of the caller's. One that answers
+//   for disjoint pairs itself gets the caller's own, which are const.
 #ifndef TETLAP_OVERLAP_FOREIGN_FOREIGN_H
 #define TETLAP_OVERLAP_FOREIGN_FOREIGN_H
 

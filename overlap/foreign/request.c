@@ -71,10 +71,9 @@ static void prepare(const OverlapForeignRequest *request, unsigned wanted, doubl
 // What else was overwritten, where a fence is not whole, nobody knows.
 static Status check_fences(const OverlapForeignRequest *request, unsigned wanted, const char *name) {
   for (int a = 0; a < ARRAYS; a++) {
-    bool is_whole = true;
-    for (size_t i = 0; wanted & 1u << a && i < FENCE * sizeof(double); i++)
-      is_whole = is_whole && fence_of(request, a)[i] == FENCE_BYTE;
-    if (!is_whole)
+    const unsigned char *fence = wanted & 1u << a ? fence_of(request, a) : NULL;
+    // All bytes are as the one before, and the first as it should be.
+    if (fence && (fence[0] != FENCE_BYTE || memcmp(fence, fence + 1, FENCE * sizeof(double) - 1) != 0))
       return status_fail(
           STATUS_SOLVER,
           "overlap model '%s' wrote beyond the end of `%s`, which has %zu rows of %zu: it must "
@@ -91,7 +90,7 @@ static Status pull(OverlapForeignRequest *request, const OverlapForeignPort *por
   prepare(request, wanted, arrays);
   TetlapModelPull it = {.size = sizeof it,
                         .count = request->count,
-                        .pairs = arrays[OVERLAP_FOREIGN_PAIRS],
+                        .pairs = request->pairs,
                         .by_volume = arrays[OVERLAP_FOREIGN_BY_VOLUME],
                         .by_centroid = arrays[OVERLAP_FOREIGN_BY_CENTROID],
                         .by_gradient = arrays[OVERLAP_FOREIGN_BY_GRADIENT],
@@ -122,7 +121,7 @@ Status overlap_foreign_request_ask(OverlapForeignRequest *request, const Overlap
   prepare(request, wanted, arrays);
   TetlapModelBatch it = {.size = sizeof it,
                          .count = request->count,
-                         .pairs = arrays[OVERLAP_FOREIGN_PAIRS],
+                         .pairs = request->pairs,
                          .volume = arrays[OVERLAP_FOREIGN_VOLUME],
                          .gradient = arrays[OVERLAP_FOREIGN_GRADIENT],
                          .centroid = arrays[OVERLAP_FOREIGN_CENTROID],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a port is asked: copies of the pairs and room for the answers. Behind each array stand numbers that no
+// What a port is asked: the pairs and room for the answers. Behind each array stand numbers that no
 // model may touch.
 #ifndef TETLAP_OVERLAP_FOREIGN_REQUEST_H
 #define TETLAP_OVERLAP_FOREIGN_REQUEST_H
@@ -24,6 +24,7 @@ typedef enum OverlapForeignArray {
 
 typedef struct OverlapForeignRequest {
   size_t count;                           // pairs that are asked for
+  const double *pairs;                    // those; often arrays[OVERLAP_FOREIGN_PAIRS]
   double *arrays[OVERLAP_FOREIGN_ARRAYS]; // as in TetlapModelBatch and TetlapModelPull
   int32_t *elements, *bodies;             // likewise
   size_t capacities[OVERLAP_FOREIGN_ARRAYS], element_capacity, body_capacity;
