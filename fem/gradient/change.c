@@ -82,6 +82,8 @@ static Status press(FemChange *change, const FemTangent *tangent, const FemParam
     double factor, square = vec3_dot(vec3_at(def->vector), vec3_at(def->vector));
     if (load->def != def) continue;
     TRY(fem_load_factor(def, tangent->state->time, &factor));
+    if (def->kind == FEM_LOAD_PRESSURE && !def->is_dead)
+      fem_load_add_force(load, factor / def->pressure, tangent->state->positions, change->force);
     for (int k = 0; k < load->vertex_count; k++) {
       Vec3 own = vec3_at(load->force + 3 * (size_t)k);
       double *force = change->force + 3 * (size_t)load->vertices[k];

@@ -154,7 +154,7 @@ static Status solve_goal(Adjoint *adjoint, int g, double *factors, FemGradient *
   TRY(compare(adjoint, &mismatch));
   gradient->residuals[g] = fmax(gradient->residuals[g], residual);
   gradient->mismatches[g] = fmax(gradient->mismatches[g], mismatch);
-  TRY(fem_tangent_multiply(&adjoint->tangent, all, adjoint->change.product));
+  TRY(fem_tangent_pull(&adjoint->tangent, all, adjoint->change.product));
   for (size_t i = 0; i < values; i++) slope[i] -= adjoint->change.product[i];
   return STATUS_OK;
 }
@@ -212,6 +212,16 @@ bool fem_gradient_has_friction(const FemModel *model) {
   return model->scene->contact.is_on && fem_scene_most_friction(&model->scene->contact) > 0;
 }
 
+bool fem_gradient_has_following(const FemModel *model) {
+  for (int l = 0; l < model->load_count; l++)
+    if (model->loads[l].triangle_count + model->loads[l].face_count > 0) return true;
+  return false;
+}
+
+bool fem_gradient_is_path(const FemModel *model) {
+  return !model->scene->is_static || fem_gradient_has_friction(model) || fem_gradient_has_following(model);
+}
+
 static Status check_contact(const FemSceneDef *scene) {
   const FemContactDef *contact = &scene->contact;
   if (!contact->is_on) return STATUS_OK;
@@ -235,11 +245,11 @@ static Status check_body(const FemBodyDef *body) {
                          "through",
                          body->name);
   for (int i = 0; i < body->load_count; i++)
-    if (body->loads[i].kind == FEM_LOAD_TORQUE ||
-        (body->loads[i].kind == FEM_LOAD_PRESSURE && !body->loads[i].is_dead))
-      return status_fail(STATUS_INPUT,
-                         "body '%s', loads[%d] turns with the body: its matrix need not be symmetric",
-                         body->name, i);
+    if (body->loads[i].kind == FEM_LOAD_TORQUE)
+      return status_fail(
+          STATUS_INPUT,
+          "body '%s', loads[%d] is a torque, whose derivative by positions is not in the matrix", body->name,
+          i);
   return STATUS_OK;
 }
 
@@ -280,6 +290,8 @@ Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGrad
   if (fem_gradient_has_friction(system->model))
     return status_fail(STATUS_INPUT,
                        "friction remembers what has been: an equilibrium alone has no gradient");
+  if (fem_gradient_has_following(system->model))
+    return status_fail(STATUS_INPUT, "a pressure that follows its surface: the matrix is not symmetric");
   Adjoint adjoint;
   Status status = create(&adjoint, system, def);
   if (!status) status = find(gradient, &adjoint);

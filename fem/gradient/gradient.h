@@ -30,8 +30,11 @@ typedef struct FemGradient {
   double *derivatives; // dg/dp, owned                       (goal_count, parameter_count)
 } FemGradient;
 
-// Whether it remembers what has been: fem/gradient/path/path.h goes back through that.
 bool fem_gradient_has_friction(const FemModel *model);
+bool fem_gradient_has_following(const FemModel *model); // pressures that turn with their surface
+// Whether fem/gradient/path/path.h finds its derivatives: of a motion, of what remembers what has been, and
+// where the matrix is not symmetric.
+bool fem_gradient_is_path(const FemModel *model);
 
 // STATUS_INPUT: what cannot be differentiated in this scene; the message says what and why.
 Status fem_gradient_check(const FemModel *model, const FemGradientDef *def);

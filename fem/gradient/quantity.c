@@ -249,7 +249,7 @@ static void mark_held(const FemQuantity *quantity, const FemTangent *tangent, do
 
 // The slope of −Σ f.
 static Status resist(const FemTangent *tangent, double weight, Scratch *scratch, double *slope) {
-  TRY(fem_tangent_multiply(tangent, scratch->w, scratch->force));
+  TRY(fem_tangent_pull(tangent, scratch->w, scratch->force));
   for (size_t i = 0; i < values_of(tangent); i++) slope[i] += weight * scratch->force[i];
   if (tangent->damping) TRY(fem_damping_pull(tangent->damping, scratch->w, -weight));
   if (!tangent->friction) return STATUS_OK;

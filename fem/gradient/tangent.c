@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/gradient/tangent.h"
 
+#include <math.h>
+#include <string.h>
+
 #include "base/memory.h"
+#include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
+#include "fem/element/quadratic_face.h"
 
 // As if nothing moved, where damping has no stiffness.
 static Status assemble(FemTangent *tangent, size_t count) {
@@ -61,8 +66,85 @@ static void add_outer(void *self, int count, const int *vertices, const double *
     product->y[3 * (size_t)vertices[r / 3] + (size_t)(r % 3)] += product->share * scale * sum * w[r];
 }
 
-Status fem_tangent_multiply(const FemTangent *tangent, const double *x, double *y) {
+// ---- Following pressures. Their stiffness in the matrix is the symmetric part; what it leaves out is there
+// at a rim that moves. Forces on a face are quadratic in its nodes' positions, so that differences are exact.
+
+enum { MOST_NODES = FEM_QUADRATIC_FACE_NODES };
+
+// A face, three nodes or six, under its pressure.
+typedef struct Face {
+  int count;
+  const int *nodes;
+  double pressure, x[3 * MOST_NODES];
+} Face;
+
+static Face face_at(const FemTangent *tangent, int count, const int *nodes, double pressure) {
+  Face face = {count, nodes, pressure, {0}};
+  for (int i = 0; i < 3 * count; i++)
+    face.x[i] = tangent->state->positions[3 * (size_t)nodes[i / 3] + (size_t)(i % 3)];
+  return face;
+}
+
+// Adds share · f where the nodes are x.
+static void add_pressure(const Face *face, const double *x, double share, double force[3 * MOST_NODES]) {
+  double area[3 * MOST_NODES] = {0};
+  if (face->count == MOST_NODES) fem_quadratic_face_area(x, area);
+  Vec3 a = vec3_at(x), whole = vec3_cross(vec3_sub(vec3_at(x + 3), a), vec3_sub(vec3_at(x + 6), a));
+  for (int k = 0; k < 3 && face->count == 3; k++) vec3_store(area + 3 * k, vec3_scale(1.0 / 6, whole));
+  for (int i = 0; i < 3 * face->count; i++) force[i] -= share * face->pressure * area[i];
+}
+
+// ∂f/∂x along a way.
+static void derive(const Face *face, const double *way, double force[3 * MOST_NODES]) {
+  double x[3 * MOST_NODES];
+  memset(force, 0, 3 * MOST_NODES * sizeof *force);
+  for (int side = 1; side >= -1; side -= 2) {
+    for (int i = 0; i < 3 * face->count; i++) x[i] = face->x[i] + side * way[i];
+    add_pressure(face, x, 0.5 * side, force);
+  }
+}
+
+// Adds −½ ((∂f/∂x)ᵀ − ∂f/∂x) λ of a face. Ways are as long as the face.
+static void turn_face(const FemTangent *tangent, const Face *face, const double *lambda, double *y) {
+  double length = tangent->system->model->edge, largest = 0;
+  double own[3 * MOST_NODES], along[3 * MOST_NODES], force[3 * MOST_NODES];
+  for (int i = 0; i < 3 * face->count; i++) {
+    own[i] = lambda[3 * (size_t)face->nodes[i / 3] + (size_t)(i % 3)];
+    largest = fmax(largest, fabs(own[i]));
+  }
+  if (!(largest > 0)) return;
+  for (int i = 0; i < 3 * face->count; i++) along[i] = own[i] * length / largest;
+  derive(face, along, force);
+  for (int i = 0; i < 3 * face->count; i++) along[i] = force[i] * largest / length;
+  for (int j = 0; j < 3 * face->count; j++) {
+    double way[3 * MOST_NODES] = {0}, across = 0;
+    way[j] = length;
+    derive(face, way, force);
+    for (int i = 0; i < 3 * face->count; i++) across += own[i] * force[i] / length;
+    y[3 * (size_t)face->nodes[j / 3] + (size_t)(j % 3)] -= 0.5 * (across - along[j]);
+  }
+}
+
+static Status turn_pressures(const FemTangent *tangent, const double *lambda, double *y) {
+  const FemModel *model = tangent->system->model;
+  for (int l = 0; l < model->load_count; l++) {
+    const FemLoad *load = &model->loads[l];
+    double factor;
+    if (load->triangle_count + load->face_count == 0) continue;
+    TRY(fem_load_factor(load->def, tangent->state->time, &factor));
+    for (int i = 0; i < load->triangle_count + load->face_count; i++) {
+      int k = i - load->triangle_count;
+      Face face = k < 0 ? face_at(tangent, 3, load->triangles[i], factor * load->def->pressure)
+                        : face_at(tangent, MOST_NODES, load->faces[k], factor * load->def->pressure);
+      turn_face(tangent, &face, lambda, y);
+    }
+  }
+  return STATUS_OK;
+}
+
+Status fem_tangent_pull(const FemTangent *tangent, const double *x, double *y) {
   fem_matrix_multiply(&tangent->stiffness, x, y);
+  TRY(turn_pressures(tangent, x, y));
   if (!tangent->stick) return STATUS_OK;
   Product product = {x, y, -1};
   return fem_effect_stick_add_stiffness(tangent->stick, tangent->state,

@@ -26,9 +26,9 @@ typedef struct FemTangent {
 Status fem_tangent_create(FemTangent *tangent, FemSystem *system, const FemState *state);
 void fem_tangent_destroy(FemTangent *tangent);
 
-// y = K x, both (vertex_count, 3), but for the parts of friction and damping, which are not exact. Those of a
-// mesh obstacle's vertices lack contact.
-Status fem_tangent_multiply(const FemTangent *tangent, const double *x, double *y);
+// y = −(∂f/∂x)ᵀ x, both (vertex_count, 3), but for the parts of friction and damping. K is symmetric but for
+// following pressures. The parts of a mesh obstacle's vertices lack contact.
+Status fem_tangent_pull(const FemTangent *tangent, const double *x, double *y);
 
 const ContactInterfaceDef *fem_tangent_interface(const FemTangent *tangent, int interface);
 // The contact of one interface, without friction: its forces (added), its energy [J], and its part of K x

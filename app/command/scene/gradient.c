@@ -74,11 +74,6 @@ typedef struct Asked {
   FemGradient gradient;
 } Asked;
 
-// Whether the last state alone does not tell the derivatives.
-static bool is_path(const FemModel *model) {
-  return !model->scene->is_static || fem_gradient_has_friction(model);
-}
-
 // Whether a goal is, at a state that was not seen before.
 static bool is_taken(const Asked *asked, const FemRunProgress *progress) {
   bool is_due = false;
@@ -89,7 +84,8 @@ static bool is_taken(const Asked *asked, const FemRunProgress *progress) {
 
 static Status at_step(void *observer, const FemRunProgress *progress) {
   Asked *asked = observer;
-  if (is_path(progress->system->model)) return fem_replay_steps_add(&asked->steps, progress->system);
+  if (fem_gradient_is_path(progress->system->model))
+    return fem_replay_steps_add(&asked->steps, progress->system);
   if (!is_taken(asked, progress)) return STATUS_OK;
   return fem_gradient_find(&asked->gradient, progress->system, &asked->def);
 }
@@ -187,7 +183,7 @@ static Status prepare(const Options *options, const FemModel *model, Asked *aske
   for (int p = 0; p < options->by_count; p++)
     TRY(status_prefix(app_gradient_read_parameter(model, options->by[p], &asked->parameters[p]), "--by"));
   TRY(fem_gradient_check(model, &asked->def));
-  return is_path(model) ? fem_path_check(model, &asked->def) : STATUS_OK;
+  return fem_gradient_is_path(model) ? fem_path_check(model, &asked->def) : STATUS_OK;
 }
 
 static Status differentiate(const Options *options, const FemModel *model) {
@@ -196,7 +192,7 @@ static Status differentiate(const Options *options, const FemModel *model) {
   FemRunOptions run = {.observe = at_step, .observer = &asked, .stop = app_job_stop_flag()};
   Status status = prepare(options, model, &asked);
   if (!status) status = app_gradient_run(model, &asked.def, &run, &result);
-  if (!status && is_path(model))
+  if (!status && fem_gradient_is_path(model))
     status = fem_path_differentiate(&asked.gradient, model, &asked.def, &asked.steps);
   if (!status && !asked.gradient.derivatives)
     status = status_fail(STATUS_SOLVER, "the run ended before time.end: no gradient");

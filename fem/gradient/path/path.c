@@ -140,7 +140,7 @@ static Status multiply(void *self, const double *x, double *y) {
   const FemNumbering *numbering = &sweep->replay.system.numbering;
   double c = fem_replay_formula(&sweep->replay, sweep->step).c;
   spread(sweep, x, 1);
-  TRY(fem_tangent_multiply(&sweep->tangent, sweep->lambda, sweep->weight));
+  TRY(fem_tangent_pull(&sweep->tangent, sweep->lambda, sweep->weight));
   if (has_friction(sweep)) {
     TRY(fem_friction_begin(&sweep->scratch, &sweep->replay.state));
     TRY(fem_friction_pull(&sweep->scratch, CONTACT_ALL_INTERFACES, sweep->lambda, 1));
@@ -261,7 +261,7 @@ static Status add_step(Sweep *sweep, FemChange *change, int p, FemGradient *grad
     TRY(fem_goal_change(&def->goals[g], &sweep->tangent, factors, change, &sum));
     factors += def->goals[g].term_count;
     spread(sweep, of_step(sweep, behind->beta, sweep->step), sweep->step > 0 ? -1 : 0);
-    TRY(fem_tangent_multiply(&sweep->tangent, sweep->lambda, sweep->weight));
+    TRY(fem_tangent_pull(&sweep->tangent, sweep->lambda, sweep->weight));
     for (size_t i = 0; i < values_of(sweep); i++)
       sum += sweep->lambda[i] * change->force[i] +
              (slope_at(sweep, g, i) - sweep->weight[i]) * change->motion[i] +

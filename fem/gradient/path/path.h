@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Derivatives dg/dp at the end of a path of steps, where the last state alone does not tell them: of a
-// motion, of a static scene with friction. They are those of a replay (fem/gradient/path/replay.h), by
-// its discrete adjoint. Backwards, with λ = −β, s_n = M (a₁ β_{n+1} + a₂ β_{n+2}), whose coefficients are
-// those of steps n + 1, n + 2, J = −∂f/∂u, D = −∂f/∂v, which is symmetric, and q what friction remembers
-// after a step (contact/friction/stick_pull.h):
+// motion, of a static scene with friction or following pressures. They are those of a replay
+// (fem/gradient/path/replay.h), by its discrete adjoint. Backwards, with λ = −β, s_n = M (a₁ β_{n+1} + a₂
+// β_{n+2}), whose coefficients are those of steps n + 1, n + 2, J = −∂f/∂u, D = −∂f/∂v, which is symmetric,
+// and q what friction remembers after a step (contact/friction/stick_pull.h):
 //
 //   (J + c D + c² M)ᵀ β_n = −∂g/∂u − c ∂g/∂v − ū_n − (∂q_n/∂u)ᵀ q̄_n − c s_n − a₁ α_{n+1} − a₂ α_{n+2}
 //   α_n = (c M + D) β_n + s_n + ∂g/∂v
@@ -11,7 +11,7 @@
 //   q̄_{n−1} = (∂f/∂q_{n−1})ᵀ λ_n + (∂q_n/∂q_{n−1})ᵀ q̄_n
 //   dg/dp = ∂g/∂p + Σ λ_n · (∂f/∂p − ∂M/∂p v̇_n) + q̄_n · ∂q_n/∂p
 //
-// Without friction and damping J is the matrix; with them J is not symmetric, and its transpose is applied
+// Without these and damping J is the matrix; with them J is not symmetric, and its transpose is applied
 // exactly, by GMRES with the factor of the matrix (fem/gradient/damping.h). How the steps themselves depend
 // on p is left out, as it is in every derivative of a run. A vertex that changes between sticking and
 // slipping within a step makes g one-sided there.

@@ -90,7 +90,10 @@ static Status create_slips(FemReplay *replay) {
 }
 
 static Status create_krylov(FemReplay *replay) {
+  const FemModel *model = replay->system.model;
   replay->is_exact = !replay->stick && !fem_system_effect(&replay->system, &fem_effect_damping);
+  for (int l = 0; l < model->load_count; l++)
+    replay->is_exact = replay->is_exact && model->loads[l].triangle_count + model->loads[l].face_count == 0;
   if (replay->is_exact) return STATUS_OK;
   double **arrays[] = {&replay->ahead, &replay->aside, &replay->rate};
   bool fits = true;

@@ -331,8 +331,7 @@ static void refuse(const char *time, const char *material, const char *keys, con
 #define YOUNG "bodies.block.material.young"
 START_TEST(what_has_no_gradient_is_refused_by_name) {
   refuse(STATIC, NU ", law: stvk, plasticity: {yield: 1e3}", "", NULL, YOUNG, "yields");
-  refuse(STATIC, NU, "    loads: [{group: z_max, torque: [0, 0, 1]}]\n", NULL, YOUNG, "turns with the body");
-  refuse(STATIC, NU, "    loads: [{group: z_max, pressure: 10}]\n", NULL, YOUNG, "turns with the body");
+  refuse(STATIC, NU, "    loads: [{group: z_max, torque: [0, 0, 1]}]\n", NULL, YOUNG, "loads[0] is a torque");
   refuse(STATIC, NU, "", "stiffness: 1e6, overlap: geo", YOUNG, "clip");
   refuse(STATIC, NU, "", "stiffness: 1e6, overlap: tpn", YOUNG, "clip");
   refuse(STATIC, NU, "", "stiffness: 1e6, potential: nodal", YOUNG, "gradients need field");

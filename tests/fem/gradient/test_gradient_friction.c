@@ -73,6 +73,25 @@ START_TEST(a_body_that_rubs_on_itself_agrees_with_differences_of_replays) {
 }
 END_TEST
 
+// At its rim a pressure that follows the surface has a matrix that is not symmetric.
+START_TEST(bodies_under_following_pressures_agree_with_differences_of_replays) {
+  const Asked asked = {.scene = "gradient_inflate",
+                       .setting = "time.end=1",
+                       .least_steps = 4,
+                       .of = {"displacement:block:x", "position:block:12:z", "reaction:block:fixed[0]:z"},
+                       .by = {"bodies.block.material.young", "bodies.block.loads[0].pressure",
+                              "bodies.block.loads[1].pressure"}};
+  const Asked plate = {
+      .scene = "gradient_inflate",
+      .setting = "time.end=1",
+      .least_steps = 4,
+      .of = {"displacement:plate:z", "displacement:plate:x@0.75", "reaction:plate:fixed[0]:x"},
+      .by = {"bodies.plate.material.poisson", "bodies.plate.loads[0].pressure"}};
+  check_against_replays(&asked);
+  check_against_replays(&plate);
+}
+END_TEST
+
 // Where it ends in contact, pairs that begin to overlap within a difference make kinks in the force.
 START_TEST(a_block_that_sticks_and_slips_in_motion_agrees_with_differences_of_replays) {
   const Asked asked = {.scene = "gradient_slide",
@@ -94,6 +113,7 @@ int main(void) {
   tcase_add_test(test_case, a_slab_under_a_rolling_cylinder_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_slab_on_a_plate_of_tetrahedra_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_body_that_rubs_on_itself_agrees_with_differences_of_replays);
+  tcase_add_test(test_case, bodies_under_following_pressures_agree_with_differences_of_replays);
   tcase_add_test(test_case, a_block_that_sticks_and_slips_in_motion_agrees_with_differences_of_replays);
   return suite_run("gradient_friction", test_case, 600);
 }
