@@ -4,7 +4,7 @@
 #include "app/command/commands.h"
 
 static const AppCommand *const commands[] = {
-    &lab_device, &lab_net, &lab_elements, &app_command_version, &app_command_help, NULL,
+    &lab_device, &lab_net, &app_command_version, &app_command_help, NULL,
 };
 
 const AppCommand lab_program_root = {

@@ -6,6 +6,6 @@
 #include "app/cli/command.h"
 
 extern const AppCommand lab_program_root;
-extern const AppCommand lab_device, lab_net, lab_elements; // its own commands, a file each
+extern const AppCommand lab_device, lab_net; // its own commands, a file each
 
 #endif

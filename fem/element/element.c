@@ -2,7 +2,6 @@
 #include "fem/element/element.h"
 
 #include "base/vec3.h"
-#include "fem/material/viscous.h"
 
 // Everything below uses nodes 1, 2, 3 only, relative to node 0: the gradients add up to zero, so node 0 takes
 // minus the sum of the others.
@@ -28,20 +27,6 @@ void fem_element_deformation(const FemElement *element, const double x[12], doub
     for (int j = 0; j < 3; j++)
       F[3 * i + j] =
           d1 * element->gradient[1][j] + d2 * element->gradient[2][j] + d3 * element->gradient[3][j];
-  }
-}
-
-// force_a = −V P ∇N_a.
-static void spread_stress(const FemElement *element, const double P[9], double force[12]) {
-  for (int i = 0; i < 3; i++) {
-    double sum = 0;
-    for (int a = 1; a < 4; a++) {
-      const double *g = element->gradient[a];
-      double f = -element->volume * (P[3 * i] * g[0] + P[3 * i + 1] * g[1] + P[3 * i + 2] * g[2]);
-      force[3 * a + i] = f;
-      sum += f;
-    }
-    force[i] = -sum;
   }
 }
 
@@ -96,48 +81,6 @@ double fem_element_energy(const FemElement *element, const FemMaterial *material
   double F[9];
   fem_element_deformation(element, x, F);
   return element->volume * fem_material_energy(material, F);
-}
-
-void fem_element_force(const FemElement *element, const FemMaterial *material, const double x[12],
-                       double force[12]) {
-  double F[9], P[9];
-  fem_element_deformation(element, x, F);
-  fem_material_stress(material, F, P);
-  spread_stress(element, P, force);
-}
-
-void fem_element_stiffness(const FemElement *element, const FemMaterial *material, const double x[12],
-                           double stiffness[144]) {
-  double F[9], dP[81];
-  fem_element_deformation(element, x, F);
-  fem_material_tangent(material, F, dP);
-  fem_element_spread_tangent(element, dP, stiffness);
-}
-
-void fem_element_damping_force(const FemElement *element, const FemMaterial *material, double beta,
-                               const double x[12], const double v[12], double force[12]) {
-  double F[9], rate[9], P[9];
-  fem_element_deformation(element, x, F);
-  fem_element_deformation(element, v, rate);
-  fem_viscous_stress(material, beta, F, rate, P);
-  spread_stress(element, P, force);
-}
-
-void fem_element_damping_matrix(const FemElement *element, const FemMaterial *material, double beta,
-                                const double x[12], double matrix[144]) {
-  double F[9], dP[81];
-  fem_element_deformation(element, x, F);
-  fem_viscous_tangent(material, beta, F, dP);
-  fem_element_spread_tangent(element, dP, matrix);
-}
-
-void fem_element_damping_stiffness(const FemElement *element, const FemMaterial *material, double beta,
-                                   const double x[12], const double v[12], double matrix[144]) {
-  double F[9], rate[9], dP[81];
-  fem_element_deformation(element, x, F);
-  fem_element_deformation(element, v, rate);
-  fem_viscous_stiffness(material, beta, F, rate, dP);
-  fem_element_spread_tangent(element, dP, matrix);
 }
 
 void fem_element_cauchy(const FemElement *element, const FemMaterial *material, const double x[12],

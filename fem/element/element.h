@@ -20,23 +20,9 @@ void fem_element_create(FemElement *element, const double rest[12]);
 void fem_element_deformation(const FemElement *element, const double x[12], double F[9]);
 
 double fem_element_energy(const FemElement *element, const FemMaterial *material, const double x[12]); // [J]
-void fem_element_force(const FemElement *element, const FemMaterial *material, const double x[12],
-                       double force[12]); // −∂U/∂x [N]
-void fem_element_stiffness(const FemElement *element, const FemMaterial *material, const double x[12],
-                           double stiffness[144]); // ∂²U/∂x² [N/m]
 
 // K_ai,bk = V Σ_jl ∂N_a/∂X_j ∂P_ij/∂F_kl ∂N_b/∂X_l for any symmetric ∂P/∂F.
 void fem_element_spread_tangent(const FemElement *element, const double dP[81], double matrix[144]);
-
-// Stiffness-proportional damping and viscosity (fem/material/viscous.h): R = ½ β V Ė:C:Ė; at rest the matrix
-// is β K. Force −∂R/∂v, matrix ∂²R/∂v² (≥ 0).
-void fem_element_damping_force(const FemElement *element, const FemMaterial *material, double beta,
-                               const double x[12], const double v[12], double force[12]); // [N]
-void fem_element_damping_matrix(const FemElement *element, const FemMaterial *material, double beta,
-                                const double x[12], double matrix[144]); // [N s/m]
-// The geometric part of −∂(damping force)/∂x (fem/material/viscous.h). May be indefinite.
-void fem_element_damping_stiffness(const FemElement *element, const FemMaterial *material, double beta,
-                                   const double x[12], const double v[12], double matrix[144]); // [N/m]
 
 // Cauchy stress [Pa] (fem_material_cauchy).
 void fem_element_cauchy(const FemElement *element, const FemMaterial *material, const double x[12],

@@ -6,7 +6,6 @@
 
 #include "base/vec3.h"
 #include "fem/material/cofactor.h"
-#include "fem/material/viscous.h"
 
 enum { NODES = FEM_QUADRATIC_NODES, POINTS = FEM_QUADRATIC_POINTS, DOFS = 3 * NODES };
 
@@ -52,17 +51,6 @@ void fem_quadratic_create_curved(FemQuadratic *element, const double nodes[30]) 
     element->weight[p] = det / (6 * POINTS);
     element->volume += element->weight[p];
   }
-}
-
-void fem_quadratic_create(FemQuadratic *element, const double corners[12]) {
-  double nodes[DOFS];
-  memcpy(nodes, corners, 12 * sizeof *nodes);
-  for (int k = 0; k < 6; k++)
-    for (int i = 0; i < 3; i++) {
-      double a = corners[3 * fem_quadratic_edges[k][0] + i], b = corners[3 * fem_quadratic_edges[k][1] + i];
-      nodes[3 * (4 + k) + i] = a + 0.5 * (b - a);
-    }
-  fem_quadratic_create_curved(element, nodes);
 }
 
 double fem_quadratic_min_jacobian(const double nodes[30]) {
@@ -129,71 +117,6 @@ static void find_stress(FemQuadraticLaw law, double pressure, const double F[9],
   double gradient[9];
   fem_material_volume(law.local->law, F, gradient);
   for (int r = 0; r < 9; r++) P[r] += pressure * gradient[r];
-}
-
-void fem_quadratic_force(const FemQuadratic *element, FemQuadraticLaw law, const double x[30],
-                         double force[30]) {
-  double pressure = mean_pressure(element, law, x), F[9], P[9];
-  memset(force, 0, DOFS * sizeof *force);
-  for (int p = 0; p < POINTS; p++) {
-    FemPoint point = fem_quadratic_point(element, p);
-    fem_point_deformation(&point, x, F);
-    find_stress(law, pressure, F, P);
-    fem_point_add_force(&point, P, force);
-  }
-}
-
-void fem_quadratic_stiffness(const FemQuadratic *element, FemQuadraticLaw law, const double x[30],
-                             double stiffness[900]) {
-  double pressure = mean_pressure(element, law, x), F[9], dP[81], curvature[81], gradient[9];
-  double change[DOFS] = {0}; // −V ∂θ̄/∂x
-  memset(stiffness, 0, DOFS * DOFS * sizeof *stiffness);
-  for (int p = 0; p < POINTS; p++) {
-    FemPoint point = fem_quadratic_point(element, p);
-    fem_point_deformation(&point, x, F);
-    fem_material_tangent(law.local, F, dP);
-    if (law.bulk > 0) {
-      fem_material_volume(law.local->law, F, gradient);
-      fem_point_add_force(&point, gradient, change);
-      fem_material_volume_curvature(law.local->law, F, curvature);
-      for (int r = 0; r < 81; r++) dP[r] += pressure * curvature[r];
-    }
-    fem_point_add_tangent(&point, dP, stiffness);
-  }
-  for (int r = 0; law.bulk > 0 && r < DOFS; r++)
-    for (int c = r; c < DOFS; c++)
-      stiffness[DOFS * r + c] += law.bulk / element->volume * change[r] * change[c];
-  fem_point_mirror(NODES, stiffness);
-}
-
-void fem_quadratic_damping_force(const FemQuadratic *element, const FemMaterial *material, double beta,
-                                 const double x[30], const double v[30], double force[30]) {
-  double F[9], rate[9], P[9];
-  memset(force, 0, DOFS * sizeof *force);
-  for (int p = 0; p < POINTS; p++) {
-    FemPoint point = fem_quadratic_point(element, p);
-    fem_point_deformation(&point, x, F);
-    fem_point_deformation(&point, v, rate);
-    fem_viscous_stress(material, beta, F, rate, P);
-    fem_point_add_force(&point, P, force);
-  }
-}
-
-void fem_quadratic_damping_matrix(const FemQuadratic *element, const FemMaterial *material, double beta,
-                                  const double x[30], const double v[30], double stiffness_scale,
-                                  double damping_scale, double matrix[900]) {
-  double F[9], rate[9], tangent[81], geometric[81];
-  memset(matrix, 0, DOFS * DOFS * sizeof *matrix);
-  for (int p = 0; p < POINTS; p++) {
-    FemPoint point = fem_quadratic_point(element, p);
-    fem_point_deformation(&point, x, F);
-    fem_point_deformation(&point, v, rate);
-    fem_viscous_tangent(material, beta, F, tangent);
-    fem_viscous_stiffness(material, beta, F, rate, geometric);
-    for (int r = 0; r < 81; r++) tangent[r] = damping_scale * tangent[r] + stiffness_scale * geometric[r];
-    fem_point_add_tangent(&point, tangent, matrix);
-  }
-  fem_point_mirror(NODES, matrix);
 }
 
 void fem_quadratic_cauchy(const FemQuadratic *element, FemQuadraticLaw law, const double x[30], int part,

@@ -47,9 +47,6 @@ extern const int fem_quadratic_edges[6][2];
 // `nodes` (10, 3) at rest, with fem_quadratic_min_jacobian > 0.
 void fem_quadratic_create_curved(FemQuadratic *element, const double nodes[30]);
 
-// A straight one. `corners` (4, 3) at rest, positively oriented and of positive volume.
-void fem_quadratic_create(FemQuadratic *element, const double corners[12]);
-
 // The smallest det(∂X/∂L) at a point over that of the straight element of the same corners: 1 if all middles
 // are in the middle, ≤ 0 where the element is inside out.
 double fem_quadratic_min_jacobian(const double nodes[30]);
@@ -63,18 +60,6 @@ double fem_quadratic_mass_share(int node);
 
 double fem_quadratic_energy(const FemQuadratic *element, FemQuadraticLaw law,
                             const double x[30]); // [J]
-void fem_quadratic_force(const FemQuadratic *element, FemQuadraticLaw law, const double x[30],
-                         double force[30]); // −∂U/∂x [N]
-void fem_quadratic_stiffness(const FemQuadratic *element, FemQuadraticLaw law, const double x[30],
-                             double stiffness[900]); // ∂²U/∂x² [N/m]
-
-// Damping as in fem/element/element.h, by fem/material/viscous.h at each point.
-void fem_quadratic_damping_force(const FemQuadratic *element, const FemMaterial *material, double beta,
-                                 const double x[30], const double v[30], double force[30]);
-// damping_scale ∂²R/∂v² + stiffness_scale · the symmetric part of −∂(damping force)/∂x.
-void fem_quadratic_damping_matrix(const FemQuadratic *element, const FemMaterial *material, double beta,
-                                  const double x[30], const double v[30], double stiffness_scale,
-                                  double damping_scale, double matrix[900]);
 
 // Cauchy stress [Pa] (fem_material_cauchy) in a part of the element: at the point near a corner for the parts
 // 0 … 3 there (fem/mesh/mesh.h), the mean of the four points for the others.

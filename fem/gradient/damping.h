@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Derivatives of a function by damping's forces at a step, backwards: by positions and by velocities.
 //
-// Damping's force is trilinear (fem/material/viscous.h): with F of x, Ḟ of v and L of λ, λ · f(x, v) =
+// Damping's force is trilinear (fem/lanes/viscous.inc): with F of x, Ḟ of v and L of λ, λ · f(x, v) =
 // −V L:FΣ(F, Ḟ), where Σ(F, Ḟ) = C_v : sym(Fᵀ Ḟ) is symmetric in its two. So f is that of a matrix which is
 // symmetric in velocities, and of positions
 //

@@ -44,18 +44,3 @@ void fem_material_isochoric_stress(const FemMaterial *material, const double F[9
   fem_cofactor_find(F, C);
   for (int r = 0; r < 9; r++) P[r] = lame.mu * (1 + g.less_one) * F[r] + weight * C[r];
 }
-
-// ∂P/∂F = μ g I + μ g' (F ⊗ cof F + cof F ⊗ F) + (μ/2 g'' I_C + K) cof F ⊗ cof F
-//         + (μ/2 g' I_C + K (J − 1)) ∂cof F/∂F.
-void fem_material_isochoric_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
-  FemLame lame = fem_material_lame(material);
-  double C[9], swelling = fem_cofactor_swelling(F), I = stretch_of(F) + 3;
-  FemMaterialPower g = fem_material_isochoric_power(swelling);
-  double outer = 0.5 * lame.mu * g.bend * I + bulk_of(lame), mixed = lame.mu * g.slope;
-  fem_cofactor_find(F, C);
-  for (int r = 0; r < 9; r++) {
-    for (int c = 0; c < 9; c++) dP[9 * r + c] = mixed * (F[r] * C[c] + C[r] * F[c]) + outer * (C[r] * C[c]);
-    dP[10 * r] += lame.mu * (1 + g.less_one);
-  }
-  fem_cofactor_add_derivative(F, 0.5 * lame.mu * g.slope * I + bulk_of(lame) * swelling, dP);
-}

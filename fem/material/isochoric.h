@@ -18,6 +18,5 @@ FemMaterialPower fem_material_isochoric_power(double swelling); // of J − 1
 
 double fem_material_isochoric_energy(const FemMaterial *material, const double F[9]);
 void fem_material_isochoric_stress(const FemMaterial *material, const double F[9], double P[9]);
-void fem_material_isochoric_tangent(const FemMaterial *material, const double F[9], double dP[81]);
 
 #endif

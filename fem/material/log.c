@@ -32,17 +32,3 @@ void fem_material_log_stress(const FemMaterial *material, const double F[9], dou
   fem_cofactor_find(F, C);
   for (int r = 0; r < 9; r++) P[r] = lame.mu * F[r] + weight * C[r];
 }
-
-// ∂P/∂F = μ I + (λ θ'² + (λ θ − μ) θ'') cof F ⊗ cof F + (λ θ − μ) θ' ∂cof F/∂F.
-void fem_material_log_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
-  FemLame lame = fem_material_lame(material);
-  FemMaterialLog theta = fem_material_log(fem_cofactor_swelling(F));
-  double C[9], pressure = lame.lambda * theta.value - lame.mu;
-  double outer = lame.lambda * theta.slope * theta.slope + pressure * theta.bend;
-  fem_cofactor_find(F, C);
-  for (int r = 0; r < 9; r++) {
-    for (int c = 0; c < 9; c++) dP[9 * r + c] = outer * (C[r] * C[c]);
-    dP[10 * r] += lame.mu;
-  }
-  fem_cofactor_add_derivative(F, pressure * theta.slope, dP);
-}

@@ -101,17 +101,6 @@ static void linear_stress(FemLame lame, const double F[9], double P[9]) {
   apply_hooke(lame, strain, P);
 }
 
-static void linear_tangent(FemLame lame, double dP[81]) {
-  memset(dP, 0, 81 * sizeof *dP);
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) {
-      int r = 3 * i + j;
-      dP[9 * r + r] += lame.mu;
-      dP[9 * r + 3 * j + i] += lame.mu;
-      dP[9 * 4 * i + 4 * j] += lame.lambda;
-    }
-}
-
 // Corotational: P = 2μ (F − R) + λ tr(S − I) R.
 
 static double corotational_energy(FemLame lame, const double F[9]) {
@@ -160,32 +149,6 @@ static void add_rotation_derivative(const double F[9], double scale, double dP[8
   }
 }
 
-// dP = 2μ dF + λ (R : dF) R + (λ tr(S − I) − 2μ) dR. With twists Q_ij = u_i v_jᵀ − u_j v_iᵀ,
-// dR = Σ_{i<j} (Q_ij : dF) Q_ij / (σ_i + σ_j)   (Smith, de Goes, Kim 2019, "Analytic eigensystems for
-// isotropic distortion energies").
-static void corotational_tangent(FemLame lame, const double F[9], double dP[81]) {
-  static const int pairs[3][2] = {{0, 1}, {1, 2}, {0, 2}};
-  FemSvd3 svd;
-  double modes[4][9], weights[4];
-  fem_svd3_factor(&svd, F);
-  fem_svd3_rotation(&svd, modes[3]);
-  weights[3] = lame.lambda;
-  double turning = lame.lambda * stretch_trace(&svd) - 2 * lame.mu;
-  for (int k = 0; k < 3; k++) {
-    double sum = svd.sigma[pairs[k][0]] + svd.sigma[pairs[k][1]];
-    find_twist(&svd, pairs[k][0], pairs[k][1], modes[k]);
-    weights[k] = turning / (sum < FEM_MATERIAL_SMALLEST_SUM ? FEM_MATERIAL_SMALLEST_SUM : sum);
-  }
-  for (int r = 0; r < 9; r++) {
-    double scaled[4];
-    for (int k = 0; k < 4; k++) scaled[k] = weights[k] * modes[k][r];
-    for (int c = r; c < 9; c++)
-      dP[9 * r + c] = dP[9 * c + r] = scaled[0] * modes[0][c] + scaled[1] * modes[1][c] +
-                                      scaled[2] * modes[2][c] + scaled[3] * modes[3][c];
-    dP[10 * r] += 2 * lame.mu;
-  }
-}
-
 // St. Venant–Kirchhoff: P = F S, S = 2μ E + λ tr E I.
 
 // E = ½ (G + Gᵀ + Gᵀ G) with G = F − I, which keeps small strains' digits.
@@ -211,32 +174,6 @@ static void stvk_stress(FemLame lame, const double F[9], double P[9]) {
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       P[3 * i + j] = F[3 * i] * S[j] + F[3 * i + 1] * S[3 + j] + F[3 * i + 2] * S[6 + j];
-}
-
-// ∂P_ij/∂F_kl = μ ((F Fᵀ)_ik δ_jl + F_il F_kj) + λ F_ij F_kl.
-static void push_stiffness(FemLame lame, const double F[9], double dP[81]) {
-  double left[9]; // F Fᵀ
-  for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 3; k++)
-      left[3 * i + k] = F[3 * i] * F[3 * k] + F[3 * i + 1] * F[3 * k + 1] + F[3 * i + 2] * F[3 * k + 2];
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      for (int k = 0; k < 3; k++) {
-        double *row = dP + 9 * (3 * i + j) + 3 * k;
-        for (int l = 0; l < 3; l++)
-          row[l] = lame.mu * (F[3 * i + l] * F[3 * k + j]) + lame.lambda * (F[3 * i + j] * F[3 * k + l]);
-        row[j] += lame.mu * left[3 * i + k];
-      }
-}
-
-// … + δ_ik S_jl.
-static void stvk_tangent(FemLame lame, const double F[9], double dP[81]) {
-  double S[9];
-  second_stress(lame, F, S);
-  push_stiffness(lame, F, dP);
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      for (int l = 0; l < 3; l++) dP[9 * (3 * i + j) + 3 * i + l] += S[3 * j + l];
 }
 
 // Stable neo-Hookean. Its own parameters, such that the given λ, μ are the small-strain ones.
@@ -269,20 +206,6 @@ static void neo_hookean_stress(FemLame lame, const double F[9], double P[9]) {
   for (int r = 0; r < 9; r++) P[r] = a * F[r] + b * C[r];
 }
 
-// ∂P/∂F = μ' (1 − 1/(I_C + 1)) I + 2 μ'/(I_C + 1)² F ⊗ F + λ' cof F ⊗ cof F + λ' (J − α) ∂cof F/∂F.
-static void neo_hookean_tangent(FemLame lame, const double F[9], double dP[81]) {
-  FemLame own = neo_hookean_parameters(lame);
-  double C[9], square = dot9(F, F);
-  fem_cofactor_find(F, C);
-  double a = own.mu * (square / (square + 1)), b = cofactor_weight(own, F, C);
-  double f = 2 * own.mu / ((square + 1) * (square + 1));
-  for (int r = 0; r < 9; r++) {
-    for (int c = 0; c < 9; c++) dP[9 * r + c] = f * (F[r] * F[c]) + own.lambda * (C[r] * C[c]);
-    dP[10 * r] += a;
-  }
-  fem_cofactor_add_derivative(F, b, dP);
-}
-
 // Fibres along a: E_f, F a, and k, which is 0 where they buckle.
 typedef struct Fibre {
   double stiffness, strain, direction[3], pushed[3];
@@ -309,17 +232,6 @@ static void add_fibre_stress(const FemMaterial *material, const double F[9], dou
   Fibre fibre = fibre_of(material, F);
   for (int r = 0; r < 9; r++)
     P[r] += fibre.stiffness * fibre.strain * fibre.pushed[r / 3] * fibre.direction[r % 3];
-}
-
-// ∂P_f/∂F = k (Fa ⊗ a)(Fa ⊗ a) + k E_f δ_ik a_j a_l.
-static void add_fibre_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
-  Fibre fibre = fibre_of(material, F);
-  const double *a = fibre.direction, *b = fibre.pushed;
-  for (int r = 0; r < 9; r++)
-    for (int c = 0; c < 9; c++) {
-      double along = a[r % 3] * a[c % 3];
-      dP[9 * r + c] += fibre.stiffness * along * (b[r / 3] * b[c / 3] + (r / 3 == c / 3 ? fibre.strain : 0));
-    }
 }
 
 static double law_energy(const FemMaterial *material, const double F[9]) {
@@ -386,37 +298,6 @@ void fem_material_stress(const FemMaterial *material, const double F[9], double 
   if (material->fibre_stiffness > 0) add_fibre_stress(material, F, P);
 }
 
-void fem_material_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
-  FemLame lame = fem_material_lame(material);
-  switch (material->law) {
-  case FEM_MATERIAL_LINEAR:
-    linear_tangent(lame, dP);
-    break;
-  case FEM_MATERIAL_COROTATIONAL:
-    corotational_tangent(lame, F, dP);
-    break;
-  case FEM_MATERIAL_STVK:
-    stvk_tangent(lame, F, dP);
-    break;
-  case FEM_MATERIAL_NEO_HOOKEAN:
-    neo_hookean_tangent(lame, F, dP);
-    break;
-  case FEM_MATERIAL_NEO_HOOKEAN_LOG:
-    fem_material_log_tangent(material, F, dP);
-    break;
-  case FEM_MATERIAL_NEO_HOOKEAN_ISOCHORIC:
-    fem_material_isochoric_tangent(material, F, dP);
-    break;
-  case FEM_MATERIAL_MOONEY_RIVLIN:
-    fem_material_mooney_tangent(material, F, dP);
-    break;
-  case FEM_MATERIAL_OGDEN:
-    fem_material_ogden_tangent(material, F, dP);
-    break;
-  }
-  if (material->fibre_stiffness > 0) add_fibre_tangent(material, F, dP);
-}
-
 bool fem_material_is_linear(const FemMaterial *material) {
   return material->law == FEM_MATERIAL_LINEAR && !(material->fibre_stiffness > 0);
 }
@@ -425,10 +306,6 @@ FemLame fem_material_viscous(const FemMaterial *material, double beta) {
   FemLame lame = fem_material_lame(material);
   return (FemLame){.lambda = beta * lame.lambda + material->bulk_viscosity - 2.0 / 3.0 * material->viscosity,
                    .mu = beta * lame.mu + material->viscosity};
-}
-
-void fem_material_pushed_stiffness(FemLame lame, const double F[9], double dP[81]) {
-  push_stiffness(lame, F, dP);
 }
 
 // θ by law.

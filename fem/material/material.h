@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Constitutive laws of isotropic elastic solids: energy density Ψ(F), first Piola–Kirchhoff stress P = ∂Ψ/∂F
-// and its derivative ∂P/∂F, exact, for every F, inverted ones included. Matrices are row-major: F[3 i + j] =
-// ∂x_i/∂X_j; the 9 × 9 derivative, symmetric, has rows P_ij, columns F_kl in the same order.
+// Constitutive laws of isotropic elastic solids: energy density Ψ(F) and first Piola–Kirchhoff stress P =
+// ∂Ψ/∂F, exact, for every F, inverted ones included; ∂P/∂F is in fem/lanes/law.inc. Matrices are row-major:
+// F[3 i + j] = ∂x_i/∂X_j; 9 × 9 ones have rows and columns in that order.
 //
 // With λ, μ of the given E, ν, every law has Ψ = 0, P = 0 and the isotropic tangent of E, ν at F = I; all but
 // `linear` also have Ψ(QF) = Ψ(F) for rotations Q:
@@ -53,9 +53,8 @@ const char *fem_material_help(FemMaterialLaw law);
 // Why an element of this law may be turned inside out by a load, and what to do; for messages.
 const char *fem_material_limit(FemMaterialLaw law);
 
-double fem_material_energy(const FemMaterial *material, const double F[9]);               // Ψ [J/m³]
-void fem_material_stress(const FemMaterial *material, const double F[9], double P[9]);    // [Pa]
-void fem_material_tangent(const FemMaterial *material, const double F[9], double dP[81]); // [Pa]
+double fem_material_energy(const FemMaterial *material, const double F[9]);            // Ψ [J/m³]
+void fem_material_stress(const FemMaterial *material, const double F[9], double P[9]); // [Pa]
 
 // Cauchy stress σ = P Fᵀ / J [Pa] of a stress P: xx, yy, zz, xy, yz, xz. Zero where |J| ≤ 1e-12. The linear
 // law does not tell the two configurations apart: its σ is P.
@@ -80,9 +79,5 @@ bool fem_material_is_linear(const FemMaterial *material);
 
 // β C and the viscosities as a pair of Lamé parameters [Pa s].
 FemLame fem_material_viscous(const FemMaterial *material, double beta);
-
-// F C Fᵀ with the small-strain C of the Lamé parameters: what a strain dE = sym(Fᵀ dF) answers with, dP = F
-// (C : dE). The material part of stvk's tangent, and the matrix of damping.
-void fem_material_pushed_stiffness(FemLame lame, const double F[9], double dP[81]);
 
 #endif

@@ -2,7 +2,6 @@
 #include "fem/material/rubber.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "fem/material/cofactor.h"
 #include "fem/material/svd3.h"
@@ -48,20 +47,6 @@ void fem_material_mooney_stress(const FemMaterial *material, const double F[9], 
   fem_cofactor_find(F, C);
   fem_cofactor_add_derivative(F, 1, D);
   for (int r = 0; r < 9; r++) P[r] = 2 * m.c1 * F[r] + 2 * m.c2 * dot9(D + 9 * r, C) + weight * C[r];
-}
-
-// ∂P/∂F = 2c₁ I + 2c₂ (D(cof F) + D D) + κ' cof F ⊗ cof F + (κ' (J − 1) − d) D.
-void fem_material_mooney_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
-  Mooney m = mooney_of(material);
-  double C[9], D[81] = {0};
-  fem_cofactor_find(F, C);
-  fem_cofactor_add_derivative(F, 1, D);
-  for (int r = 0; r < 9; r++)
-    for (int c = r; c < 9; c++)
-      dP[9 * r + c] = dP[9 * c + r] = 2 * m.c2 * dot9(D + 9 * r, D + 9 * c) + m.kappa * C[r] * C[c];
-  for (int r = 0; r < 9; r++) dP[10 * r] += 2 * m.c1;
-  fem_cofactor_add_derivative(C, 2 * m.c2, dP);
-  fem_cofactor_add_derivative(F, m.kappa * fem_cofactor_swelling(F) - m.d, dP);
 }
 
 // Ogden.
@@ -114,21 +99,6 @@ static double ogden_energy(const FemOgden *law, double stretch) {
   return sum + edge.value * way + 0.5 * edge.slope * way * way;
 }
 
-// (f(a) − f(b))/(a − b), to all digits however near they are: a^q − b^q = b^q ((1 + (a − b)/b)^q − 1). Below
-// the edge the share of the way that is above it counts.
-static double ogden_quotient(const FemOgden *law, double a, double b) {
-  const double least = FEM_MATERIAL_OGDEN_SMALLEST;
-  double high = fmax(a, least), low = fmax(b, least), d = high - low, sum = 0;
-  for (int p = 0; p < 3; p++) {
-    double q = law->power[p];
-    if (law->own[p] != 0)
-      sum += law->own[p] * pow(low, q) * (d == 0 ? q / low : expm1(q * log1p(d / low)) / d);
-  }
-  if (high == a && low == b) return sum;
-  double share = a == b ? 1 : d / (a - b);
-  return share * sum + (1 - share) * ogden_power(law, least).slope;
-}
-
 // d = w'(1) makes the stress at rest zero; κ' = λ + d.
 static double ogden_rest(const FemOgden *law) {
   return law->own[0] + law->own[1] + law->own[2];
@@ -161,46 +131,4 @@ void fem_material_ogden_stress(const FemMaterial *material, const double F[9], d
     double f = ogden_force(&law, svd.sigma[k]).value;
     for (int r = 0; r < 9; r++) P[r] += f * svd.U[3 * (r / 3) + k] * svd.V[3 * (r % 3) + k];
   }
-}
-
-static void add_outer(const double mode[9], double weight, double dP[81]) {
-  for (int r = 0; r < 9; r++)
-    for (int c = 0; c < 9; c++) dP[9 * r + c] += weight * mode[r] * mode[c];
-}
-
-// The planes (i, j): twist u_i v_jᵀ − u_j v_iᵀ with (f_i + f_j)/(σ_i + σ_j), flip u_i v_jᵀ + u_j v_iᵀ with
-// (f_i − f_j)/(σ_i − σ_j), each of length √2 (Smith, de Goes, Kim 2019).
-static void add_plane(const FemOgden *law, const FemSvd3 *svd, int i, int j, double dP[81]) {
-  double a = svd->sigma[i], b = svd->sigma[j];
-  double forces = ogden_force(law, a).value + ogden_force(law, b).value;
-  double twisting = forces / fmax(a + b, FEM_MATERIAL_OGDEN_SMALLEST_SUM);
-  double flipping = ogden_quotient(law, a, b);
-  double twist[9], flip[9];
-  for (int r = 0; r < 9; r++) {
-    double ij = svd->U[3 * (r / 3) + i] * svd->V[3 * (r % 3) + j];
-    double ji = svd->U[3 * (r / 3) + j] * svd->V[3 * (r % 3) + i];
-    twist[r] = ij - ji;
-    flip[r] = ij + ji;
-  }
-  add_outer(twist, 0.5 * twisting, dP);
-  add_outer(flip, 0.5 * flipping, dP);
-}
-
-void fem_material_ogden_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
-  FemSvd3 svd;
-  FemOgden law = fem_material_ogden(material);
-  double C[9], d = ogden_rest(&law), kappa = fem_material_lame(material).lambda + d;
-  fem_svd3_factor(&svd, F);
-  fem_cofactor_find(F, C);
-  memset(dP, 0, 81 * sizeof *dP);
-  add_outer(C, kappa, dP);
-  for (int k = 0; k < 3; k++) {
-    double mode[9];
-    for (int r = 0; r < 9; r++) mode[r] = svd.U[3 * (r / 3) + k] * svd.V[3 * (r % 3) + k];
-    add_outer(mode, ogden_force(&law, svd.sigma[k]).slope, dP);
-    add_plane(&law, &svd, k, (k + 1) % 3, dP);
-  }
-  fem_cofactor_add_derivative(F, kappa * fem_cofactor_swelling(F) - d, dP);
-  for (int r = 0; r < 9; r++)
-    for (int c = 0; c < r; c++) dP[9 * r + c] = dP[9 * c + r];
 }

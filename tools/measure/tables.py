@@ -84,11 +84,6 @@ def networks(told):
     return table(["net", "by", "quantity", "samples a processor second", "over PyTorch", "of peak"], rows, 3)
 
 
-def elements(told):
-    rows = [[row["element"], row["law"], row["what"], figure(row["single_s"], 3), figure(row["lanes_s"], 3), figure(row["ratio"], 3)] for row in objects(told)]
-    return table(["element", "law", "what", "one by one [s]", "in lanes [s]", "ratio"], rows, 3)
-
-
 def unseen(told):
     keys = {"V": "volume_error", "moments": "moment_error", "nodal forces": "nodal_force_error", "total force": "total_force_error", "false friction": "tangential_error",
             "work round the path": "path_work", "of `clip`": "path_work_clip", "processor time over `clip`": "time_ratio"}
@@ -194,7 +189,6 @@ TABLES = {
     "threads": Bench([["tools/measure/threads", "--program", "{program}", "--rounds", "3", "--plot", "{folder}/threads.svg", "heap:2", "heap:3", "examples/12_fold.yaml",
                        "examples/02_two_blocks.yaml@time.end=0.08;bodies.lower.mesh.box.cells=16;bodies.upper.mesh.box.cells=18"]], as_told, 15, ("threads.svg", "docs/images/threads.svg")),
     "networks": Bench([["tetlap-lab", "net", "-t", "1", "-r", "5", "--json"]], networks, 3),
-    "elements": Bench([["tetlap-lab", "elements", "--json"]], elements, 2),
     "frontier": Bench([["tools/measure/frontier", "--program", "{program}", "--pairs", "near", "-r", "3", "--sweep", "examples/train/sweep", "--wall", "5", "-o", "{folder}",
                         "examples/precision/edge.yaml"]], as_told, 12),
     "frontier-picture": Bench([["tools/measure/frontier", "--program", "{program}", "--pairs", "near", "--draw", "V+grad", "-o", "{folder}"]], as_told, 3,

@@ -11,6 +11,7 @@
 #include "fem/effect/elements/assembly.h"
 #include "fem/effect/numbering.h"
 #include "fem/model/build.h"
+#include "reference/element.h"
 
 // Two boxes of different law and damping, the first with a fixed face, and an obstacle that must stay silent.
 typedef struct Scene {
@@ -149,7 +150,7 @@ START_TEST(elastic_forces_and_energy_are_the_sums_over_elements_of_bodies) {
     const FemMaterial *material = &model->parts[model->tet_part[tet]].material;
     gather(&scene, scene.x, tet, x);
     const FemElement element = fem_model_element(model, tet);
-    fem_element_force(&element, material, x, force);
+    reference_element_force(&element, material, x, force);
     for (int r = 0; r < 12; r++) expected[3 * model->tets[tet][r / 3] + r % 3] += force[r];
     sum += fem_element_energy(&element, material, x);
   }
@@ -273,9 +274,9 @@ START_TEST(damping_adds_both_of_its_matrices) {
     gather(&scene, scene.x, tet, x);
     gather(&scene, scene.v, tet, v);
     const FemElement element = fem_model_element(model, tet);
-    fem_element_damping_matrix(&element, &part->material, part->damping, x, matrix);
+    reference_element_damping_matrix(&element, &part->material, part->damping, x, matrix);
     fem_matrix_add(&expected, 4, model->tets[tet], matrix, 7);
-    fem_element_damping_stiffness(&element, &part->material, part->damping, x, v, matrix);
+    reference_element_damping_stiffness(&element, &part->material, part->damping, x, v, matrix);
     fem_matrix_add(&expected, 4, model->tets[tet], matrix, 3);
   }
   FemState state = state_of(&scene);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "fem/element/element.h"
+#include "reference/element.h"
 
 enum { SAMPLES = 50 };
 
@@ -120,7 +120,7 @@ START_TEST(a_pulled_unit_tetrahedron_has_the_forces_of_its_faces) {
   fem_element_create(&element, unit_tet);
   double e = 0.01, side = 1 - material.poisson * e, force[12];
   double x[12] = {0, 0, 0, 1 + e, 0, 0, 0, side, 0, 0, 0, side};
-  fem_element_force(&element, &material, x, force);
+  reference_element_force(&element, &material, x, force);
   // Uniaxial stress E e on faces of projected area ½, a third to each vertex: node 1 bears E e / 6.
   ck_assert_near(force[3], -material.young * e / 6, 1e-16);
   ck_assert_near(force[0], material.young * e / 6, 1e-16);
@@ -137,7 +137,7 @@ START_TEST(force_is_minus_the_derivative_of_energy) {
     FemElement element;
     draw_tet(&random, rest, &element);
     move_by(rest, 0.1, &random, x);
-    fem_element_force(&element, &material, x, force);
+    reference_element_force(&element, &material, x, force);
     for (int r = 0; r < 12; r++) {
       for (int s = 0; s < 4; s++) {
         memcpy(moved, x, sizeof moved);
@@ -158,14 +158,14 @@ START_TEST(stiffness_is_minus_the_derivative_of_force_and_symmetric) {
     FemElement element;
     draw_tet(&random, rest, &element);
     move_by(rest, 0.1, &random, x);
-    fem_element_stiffness(&element, &material, x, stiffness);
+    reference_element_stiffness(&element, &material, x, stiffness);
     check_symmetric(stiffness);
     double scale = fmax(1, largest_entry(stiffness, 144));
     for (int c = 0; c < 12; c++) {
       for (int s = 0; s < 4; s++) {
         memcpy(moved, x, sizeof moved);
         moved[c] += steps[s] * h;
-        fem_element_force(&element, &material, moved, force[s]);
+        reference_element_force(&element, &material, moved, force[s]);
       }
       for (int r = 0; r < 12; r++) {
         double values[4] = {force[0][r], force[1][r], force[2][r], force[3][r]};
@@ -185,8 +185,8 @@ START_TEST(inverted_elements_have_finite_values_and_consistent_derivatives) {
     fem_element_create(&element, unit_tet);
     move_by(unit_tet, 0.02, &random, x);
     x[11] = -0.3; // the fourth vertex pushed through the opposite face
-    fem_element_force(&element, &material, x, force);
-    fem_element_stiffness(&element, &material, x, stiffness);
+    reference_element_force(&element, &material, x, force);
+    reference_element_stiffness(&element, &material, x, stiffness);
     for (int r = 0; r < 144; r++) ck_assert(isfinite(stiffness[r]));
     for (int r = 0; r < 12; r++) {
       for (int s = 0; s < 4; s++) {
@@ -209,11 +209,11 @@ START_TEST(rigid_motion_gives_no_force_and_no_damping) {
     draw_tet(&random, rest, &element);
     random_rotation(&random, Q);
     place(rest, Q, (const double[3]){1, 2, 3}, x);
-    fem_element_force(&element, &material, x, force);
+    reference_element_force(&element, &material, x, force);
     if (_i != FEM_MATERIAL_LINEAR)
       for (int r = 0; r < 12; r++) ck_assert_near(force[r], 0, 1e-13);
     spin_about(x, (const double[3]){3, -1, 2}, (const double[3]){0.4, -2, 1}, v);
-    fem_element_damping_force(&element, &material, 0.7, x, v, force);
+    reference_element_damping_force(&element, &material, 0.7, x, v, force);
     for (int r = 0; r < 12; r++) ck_assert_near(force[r], 0, 1e-13);
   }
 }
@@ -228,7 +228,7 @@ START_TEST(rigid_spin_of_a_deformed_element_is_not_damped) {
     draw_tet(&random, rest, &element);
     move_by(rest, 0.3, &random, x);
     spin_about(x, (const double[3]){3, -1, 2}, (const double[3]){0.4, -2, 1}, v);
-    fem_element_damping_force(&element, &material, 0.7, x, v, force);
+    reference_element_damping_force(&element, &material, 0.7, x, v, force);
     for (int r = 0; r < 12; r++) ck_assert_near(force[r], 0, 1e-11);
   }
 }
@@ -243,9 +243,9 @@ START_TEST(forces_and_torques_of_an_element_balance) {
     draw_tet(&random, rest, &element);
     move_by(rest, 0.3, &random, x);
     for (int r = 0; r < 12; r++) v[r] = random_normal(&random);
-    fem_element_force(&element, &material, x, force);
+    reference_element_force(&element, &material, x, force);
     check_balance(x, force, 1e-12 * fmax(1, largest_entry(force, 12)));
-    fem_element_damping_force(&element, &material, 0.7, x, v, force);
+    reference_element_damping_force(&element, &material, 0.7, x, v, force);
     check_balance(x, force, 1e-12 * fmax(1, largest_entry(force, 12)));
   }
 }
@@ -258,8 +258,8 @@ START_TEST(at_rest_damping_is_beta_times_stiffness) {
     double rest[12], damping[144], stiffness[144], beta = 0.03;
     FemElement element;
     draw_tet(&random, rest, &element);
-    fem_element_damping_matrix(&element, &material, beta, rest, damping);
-    fem_element_stiffness(&element, &material, rest, stiffness);
+    reference_element_damping_matrix(&element, &material, beta, rest, damping);
+    reference_element_stiffness(&element, &material, rest, stiffness);
     check_symmetric(damping);
     for (int r = 0; r < 144; r++) ck_assert_near(damping[r], beta * stiffness[r], 1e-12);
   }
@@ -276,8 +276,8 @@ START_TEST(damping_force_and_matrix_agree) {
     draw_tet(&random, rest, &element);
     move_by(rest, 0.5, &random, x);
     for (int r = 0; r < 12; r++) v[r] = random_normal(&random);
-    fem_element_damping_force(&element, &material, 0.7, x, v, force);
-    fem_element_damping_matrix(&element, &material, 0.7, x, matrix);
+    reference_element_damping_force(&element, &material, 0.7, x, v, force);
+    reference_element_damping_matrix(&element, &material, 0.7, x, matrix);
     double scale = fmax(1, largest_entry(matrix, 144));
     for (int r = 0; r < 12; r++) ck_assert_near(force[r], -dot12(matrix + 12 * r, v), 1e-13 * scale);
     ck_assert_double_lt(dot12(force, v), 0);
@@ -296,7 +296,7 @@ START_TEST(damping_stiffness_has_the_derivative_of_forces_that_turn_or_move_a_bo
     draw_tet(&random, rest, &element);
     move_by(rest, 0.2, &random, x);
     for (int r = 0; r < 12; r++) v[r] = random_normal(&random);
-    fem_element_damping_stiffness(&element, &material, 0.7, x, v, matrix);
+    reference_element_damping_stiffness(&element, &material, 0.7, x, v, matrix);
     check_symmetric(matrix);
     memset(turned, 0, sizeof turned);
     for (int a = 0; a < 4; a++)
@@ -310,7 +310,7 @@ START_TEST(damping_stiffness_has_the_derivative_of_forces_that_turn_or_move_a_bo
       for (int s = 0; s < 4; s++) {
         memcpy(moved, x, sizeof moved);
         moved[c] += steps[s] * h;
-        fem_element_damping_force(&element, &material, 0.7, moved, v, force[s]);
+        reference_element_damping_force(&element, &material, 0.7, moved, v, force[s]);
       }
       for (int m = 0; m < 6; m++) {
         double values[4];
@@ -365,7 +365,7 @@ START_TEST(a_patch_of_elements_carries_uniform_stress) {
     fem_element_create(&element, rest);
     ck_assert(element.volume > 0);
     volume += element.volume;
-    fem_element_force(&element, &material, x, force);
+    reference_element_force(&element, &material, x, force);
     for (int r = 0; r < 12; r++) forces[3 * vertices[r / 3] + r % 3] += force[r];
     fem_element_cauchy(&element, &material, x, stress);
     for (int s = 0; s < 6; s++) {
@@ -426,8 +426,8 @@ START_TEST(viscosities_are_the_lame_parameters_of_damping) {
   fem_element_create(&element, rest);
   double x[12], v[12], force[2][12];
   for (int r = 0; r < 12; r++) x[r] = rest[r] + 0.1 * random_normal(&random), v[r] = random_normal(&random);
-  fem_element_damping_force(&element, &plain, 0.7, x, v, force[0]);
-  fem_element_damping_force(&element, &viscous, 0, x, v, force[1]);
+  reference_element_damping_force(&element, &plain, 0.7, x, v, force[0]);
+  reference_element_damping_force(&element, &viscous, 0, x, v, force[1]);
   for (int r = 0; r < 12; r++) ck_assert_near(force[0][r], force[1][r], 1e-14);
 }
 END_TEST

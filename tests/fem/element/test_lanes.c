@@ -11,6 +11,7 @@
 #include "fem/effect/elements/packs.h"
 #include "fem/lanes/lanes.h"
 #include "fem/model/build.h"
+#include "reference/element.h"
 
 enum { ROUNDS = 40 };
 
@@ -108,9 +109,9 @@ START_TEST(elastic_forces_and_matrices_are_those_of_single_elements) {
         check_scalar(energy[l], fem_element_energy(&eight.element[l], &material, eight.x + 12 * l), round,
                      all[k]->name);
         double expected[144];
-        fem_element_force(&eight.element[l], &material, eight.x + 12 * l, expected);
+        reference_element_force(&eight.element[l], &material, eight.x + 12 * l, expected);
         check_forces(force, l, expected, allowed[round % 4], all[k]->name);
-        fem_element_stiffness(&eight.element[l], &material, eight.x + 12 * l, expected);
+        reference_element_stiffness(&eight.element[l], &material, eight.x + 12 * l, expected);
         for (int r = 0; r < 144; r++) expected[r] *= 2;
         check_matrix(matrix, l, expected, allowed[round % 4], all[k]->name);
       }
@@ -134,13 +135,13 @@ START_TEST(damping_forces_and_matrices_are_those_of_single_elements) {
       for (int l = 0; l < FEM_LANES; l++) {
         const double *x = eight.x + 12 * l, *v = eight.v + 12 * l;
         double expected[144], part[144], taken = 0;
-        fem_element_damping_force(&eight.element[l], &material, 0.1, x, v, expected);
+        reference_element_damping_force(&eight.element[l], &material, 0.1, x, v, expected);
         for (int r = 0; r < 12; r++) taken -= expected[r] * v[r];
         check_scalar(power[l], taken, round, all[k]->name);
         check_forces(force, l, expected, allowed[round % 4], all[k]->name);
-        fem_element_damping_stiffness(&eight.element[l], &material, 0.1, eight.x + 12 * l, eight.v + 12 * l,
-                                      expected);
-        fem_element_damping_matrix(&eight.element[l], &material, 0.1, eight.x + 12 * l, part);
+        reference_element_damping_stiffness(&eight.element[l], &material, 0.1, eight.x + 12 * l,
+                                            eight.v + 12 * l, expected);
+        reference_element_damping_matrix(&eight.element[l], &material, 0.1, eight.x + 12 * l, part);
         for (int r = 0; r < 144; r++) expected[r] = 3 * expected[r] + 2 * part[r];
         check_matrix(matrix, l, expected, allowed[round % 4], all[k]->name);
       }
@@ -213,9 +214,9 @@ START_TEST(deformations_of_every_kind_are_those_of_single_elements) {
       double expected[144];
       all[k]->force(&material, &eight.lanes, eight.x, force);
       all[k]->matrix(&material, &eight.lanes, eight.x, 1, matrix);
-      fem_element_force(&eight.element[3], &material, eight.x + 36, expected);
+      reference_element_force(&eight.element[3], &material, eight.x + 36, expected);
       check_forces(force, 3, expected, 1e-14, all[k]->name);
-      fem_element_stiffness(&eight.element[3], &material, eight.x + 36, expected);
+      reference_element_stiffness(&eight.element[3], &material, eight.x + 36, expected);
       check_matrix(matrix, 3, expected, 1e-14, all[k]->name);
     }
   }

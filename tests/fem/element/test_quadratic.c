@@ -6,11 +6,10 @@
 
 #include "base/random.h"
 #include "base/vec3.h"
-#include "fem/element/element.h"
-#include "fem/element/quadratic.h"
 #include "fem/element/quadratic_face.h"
 #include "fem/mesh/mesh.h"
 #include "fem/scene/load.h"
+#include "reference/element.h"
 
 static const double corners[12] = {0.1, -0.2, 0, 1.2, 0.1, -0.1, 0.2, 0.9, 0.1, -0.1, 0.2, 1.1};
 static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -49,7 +48,7 @@ static void map(const double F[9], const double *X, double *x) {
 START_TEST(gradients_of_shape_functions_reproduce_quadratic_fields) {
   FemQuadratic element;
   double X[30], volume = 0;
-  fem_quadratic_create(&element, corners);
+  reference_quadratic_create(&element, corners);
   place_nodes(corners, X);
   for (int p = 0; p < FEM_QUADRATIC_POINTS; p++) {
     FemPoint point = fem_quadratic_point(&element, p);
@@ -78,7 +77,7 @@ START_TEST(a_quadratic_displacement_has_its_exact_energy) {
   FemMaterial material = make_material(FEM_MATERIAL_LINEAR);
   FemQuadratic element;
   double X[30], x[30], exact = 0;
-  fem_quadratic_create(&element, corners);
+  reference_quadratic_create(&element, corners);
   place_nodes(corners, X);
   for (int a = 0; a < 10; a++) {
     const double *Y = X + 3 * a;
@@ -107,20 +106,20 @@ START_TEST(force_and_stiffness_are_derivatives) {
   FemQuadratic element;
   Random random = random_seeded(5, (uint64_t)_i);
   double X[30], x[30], force[30], K[900], above[30], below[30], h = 1e-5;
-  fem_quadratic_create(&element, corners);
+  reference_quadratic_create(&element, corners);
   place_nodes(corners, X);
   draw_around(&random, X, 0.05, x);
-  fem_quadratic_force(&element, law, x, force);
-  fem_quadratic_stiffness(&element, law, x, K);
+  reference_quadratic_force(&element, law, x, force);
+  reference_quadratic_stiffness(&element, law, x, K);
   double net[3] = {0}, torque[3] = {0};
   for (int r = 0; r < 30; r++) {
     double here = x[r];
     x[r] = here + h;
     double high = fem_quadratic_energy(&element, law, x);
-    fem_quadratic_force(&element, law, x, above);
+    reference_quadratic_force(&element, law, x, above);
     x[r] = here - h;
     double low = fem_quadratic_energy(&element, law, x);
-    fem_quadratic_force(&element, law, x, below);
+    reference_quadratic_force(&element, law, x, below);
     x[r] = here;
     ck_assert_near(force[r], -(high - low) / (2 * h), 1e-8);
     for (int c = 0; c < 30; c++) {
@@ -141,11 +140,11 @@ START_TEST(turned_inside_out_it_stays_finite_with_the_same_derivatives) {
   FemQuadraticLaw law = {&material, 3};
   FemQuadratic element;
   double X[30], x[30], force[30], h = 1e-5;
-  fem_quadratic_create(&element, corners);
+  reference_quadratic_create(&element, corners);
   place_nodes(corners, X);
   for (int r = 0; r < 30; r++) x[r] = r % 3 == 0 ? -X[r] : X[r] + 0.03 * sin(r);
   ck_assert(fem_quadratic_det(&element, 0, x) < 0);
-  fem_quadratic_force(&element, law, x, force);
+  reference_quadratic_force(&element, law, x, force);
   for (int r = 0; r < 30; r++) {
     double here = x[r];
     x[r] = here + h;
@@ -186,9 +185,9 @@ START_TEST(only_rigid_motions_cost_no_energy) {
   FemMaterial material = make_material(_i % LAWS);
   FemQuadratic element;
   double X[30], K[900];
-  fem_quadratic_create(&element, corners);
+  reference_quadratic_create(&element, corners);
   place_nodes(corners, X);
-  fem_quadratic_stiffness(&element, (FemQuadraticLaw){&material, _i < LAWS ? 0 : 100}, X, K);
+  reference_quadratic_stiffness(&element, (FemQuadraticLaw){&material, _i < LAWS ? 0 : 100}, X, K);
   ck_assert_int_eq(rank_of(K, 1e-10), 24);
 }
 END_TEST
@@ -198,7 +197,7 @@ START_TEST(rigid_motion_gives_no_force_and_no_damping) {
   FemQuadratic element;
   double X[30], x[30], v[30], force[30], c = cos(1.1), s = sin(1.1);
   const double Q[9] = {c, -s, 0, s, c, 0, 0, 0, 1};
-  fem_quadratic_create(&element, corners);
+  reference_quadratic_create(&element, corners);
   place_nodes(corners, X);
   for (int a = 0; a < 10; a++) {
     map(material.law == FEM_MATERIAL_LINEAR ? identity : Q, X + 3 * a, x + 3 * a);
@@ -206,15 +205,15 @@ START_TEST(rigid_motion_gives_no_force_and_no_damping) {
     const double spin[3] = {-x[3 * a + 1], x[3 * a] - 100, 0};
     for (int i = 0; i < 3; i++) v[3 * a + i] = 2 + spin[i];
   }
-  fem_quadratic_force(&element, (FemQuadraticLaw){&material, 5}, x, force);
+  reference_quadratic_force(&element, (FemQuadraticLaw){&material, 5}, x, force);
   for (int r = 0; r < 30; r++) ck_assert_near(force[r], 0, 1e-12);
-  fem_quadratic_damping_force(&element, &material, 0.3, x, v, force);
+  reference_quadratic_damping_force(&element, &material, 0.3, x, v, force);
   for (int r = 0; r < 30; r++) ck_assert_near(force[r], 0, 1e-12);
 }
 END_TEST
 
 // Force against the dissipation, matrices against differences of the force. The damping stiffness is the
-// geometric part (fem/material/viscous.h): with φ a motion that turns or moves the element, φ · matrix must
+// geometric part (fem/lanes/viscous.inc): with φ a motion that turns or moves the element, φ · matrix must
 // be φ · derivative.
 START_TEST(damping_force_power_and_matrices_agree) {
   FemMaterial material = make_material(_i);
@@ -222,26 +221,26 @@ START_TEST(damping_force_power_and_matrices_agree) {
   Random random = random_seeded(7, (uint64_t)_i);
   double X[30], x[30], v[30], force[30], D[900], K[900], above[30], below[30], slope[900], h = 1e-5,
                                                                                            power = 0;
-  fem_quadratic_create(&element, corners);
+  reference_quadratic_create(&element, corners);
   place_nodes(corners, X);
   draw_around(&random, X, 0.1, x);
   for (int r = 0; r < 30; r++) v[r] = random_normal(&random);
-  fem_quadratic_damping_force(&element, &material, 0.3, x, v, force);
-  fem_quadratic_damping_matrix(&element, &material, 0.3, x, v, 0, 1, D);
-  fem_quadratic_damping_matrix(&element, &material, 0.3, x, v, 1, 0, K);
+  reference_quadratic_damping_force(&element, &material, 0.3, x, v, force);
+  reference_quadratic_damping_matrix(&element, &material, 0.3, x, v, 0, 1, D);
+  reference_quadratic_damping_matrix(&element, &material, 0.3, x, v, 1, 0, K);
   for (int r = 0; r < 30; r++) {
     double here = v[r], there = x[r];
     power -= force[r] * v[r];
     v[r] = here + h;
-    fem_quadratic_damping_force(&element, &material, 0.3, x, v, above);
+    reference_quadratic_damping_force(&element, &material, 0.3, x, v, above);
     v[r] = here - h;
-    fem_quadratic_damping_force(&element, &material, 0.3, x, v, below);
+    reference_quadratic_damping_force(&element, &material, 0.3, x, v, below);
     v[r] = here;
     for (int c = 0; c < 30; c++) ck_assert_near(D[30 * r + c], -(above[c] - below[c]) / (2 * h), 1e-8);
     x[r] = there + h;
-    fem_quadratic_damping_force(&element, &material, 0.3, x, v, above);
+    reference_quadratic_damping_force(&element, &material, 0.3, x, v, above);
     x[r] = there - h;
-    fem_quadratic_damping_force(&element, &material, 0.3, x, v, below);
+    reference_quadratic_damping_force(&element, &material, 0.3, x, v, below);
     x[r] = there;
     for (int c = 0; c < 30; c++) slope[30 * c + r] = -(above[c] - below[c]) / (2 * h);
   }
@@ -269,7 +268,7 @@ START_TEST(stress_of_a_uniform_state_is_the_same_everywhere) {
               whole = fem_material_with_lambda(&material, 2);
   FemQuadratic element;
   double X[30], x[30], P[9], expected[6], stress[6];
-  fem_quadratic_create(&element, corners);
+  reference_quadratic_create(&element, corners);
   place_nodes(corners, X);
   for (int a = 0; a < 10; a++) map(F, X + 3 * a, x + 3 * a);
   fem_material_stress(&whole, F, P);
@@ -400,8 +399,8 @@ START_TEST(a_linear_field_passes_the_patch_test) {
     double at[12], x[30], own[30];
     for (int k = 0; k < 4; k++) memcpy(at + 3 * k, mesh.rest + 3 * mesh.quadratic[e][k], 3 * sizeof *at);
     for (int k = 0; k < 10; k++) map(F, mesh.rest + 3 * mesh.quadratic[e][k], x + 3 * k);
-    fem_quadratic_create(&element, at);
-    fem_quadratic_force(&element, law, x, own);
+    reference_quadratic_create(&element, at);
+    reference_quadratic_force(&element, law, x, own);
     energy += fem_quadratic_energy(&element, law, x);
     for (int r = 0; r < 30; r++) force[3 * mesh.quadratic[e][r / 3] + r % 3] += own[r];
   }

@@ -6,9 +6,9 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "fem/effect/elements/packs.h"
-#include "fem/element/quadratic.h"
 #include "fem/lanes/lanes.h"
 #include "fem/model/build.h"
+#include "reference/element.h"
 
 enum { ROUNDS = 24, NODES = FEM_QUADRATIC_NODES, DOFS = 3 * NODES };
 
@@ -122,9 +122,9 @@ START_TEST(elastic_forces_and_matrices_are_those_of_single_elements) {
         double expected[DOFS * DOFS];
         check_scalar(energy[l], fem_quadratic_energy(&eight.element[l], law, eight.x + DOFS * l), round,
                      all[k]->name);
-        fem_quadratic_force(&eight.element[l], law, eight.x + DOFS * l, expected);
+        reference_quadratic_force(&eight.element[l], law, eight.x + DOFS * l, expected);
         check_forces(force, l, expected, allowed[round % 4], all[k]->name);
-        fem_quadratic_stiffness(&eight.element[l], law, eight.x + DOFS * l, expected);
+        reference_quadratic_stiffness(&eight.element[l], law, eight.x + DOFS * l, expected);
         for (int r = 0; r < DOFS * DOFS; r++) expected[r] *= 2;
         check_matrix(matrix, l, expected, allowed[round % 4], all[k]->name);
       }
@@ -149,11 +149,11 @@ START_TEST(damping_forces_and_matrices_are_those_of_single_elements) {
       for (int l = 0; l < FEM_LANES; l++) {
         double expected[DOFS * DOFS], taken = 0;
         const double *x = eight.x + DOFS * l, *v = eight.v + DOFS * l;
-        fem_quadratic_damping_force(&eight.element[l], &material, 0.1, x, v, expected);
+        reference_quadratic_damping_force(&eight.element[l], &material, 0.1, x, v, expected);
         for (int r = 0; r < DOFS; r++) taken -= expected[r] * v[r];
         check_scalar(power[l], taken, round, all[k]->name);
         check_forces(force, l, expected, allowed[round % 4], all[k]->name);
-        fem_quadratic_damping_matrix(&eight.element[l], &material, 0.1, x, v, 3, 2, expected);
+        reference_quadratic_damping_matrix(&eight.element[l], &material, 0.1, x, v, 3, 2, expected);
         check_matrix(matrix, l, expected, allowed[round % 4], all[k]->name);
       }
     }

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "fem/element/element.h"
 #include "fem/sparse/solver.h"
+#include "reference/element.h"
 
 static const FemSolverKind KINDS[] = {FEM_SOLVER_CHOLMOD, FEM_SOLVER_KLU, FEM_SOLVER_PCG, FEM_SOLVER_AMG,
                                       FEM_SOLVER_GAMG};
@@ -304,7 +304,7 @@ static void stiffen_tet(void *self, const int tet[4]) {
     order[2] = tet[3], order[3] = tet[2];
   }
   ck_assert(element.volume > 0);
-  fem_element_stiffness(&element, &material, rest, dense);
+  reference_element_stiffness(&element, &material, rest, dense);
   fem_matrix_add(&bar->matrix, 4, order, dense, 1);
 }
 
