@@ -53,6 +53,13 @@ class Gradient(unittest.TestCase):
         with self.assertRaisesRegex(tetlap.RunError, "not within the run"):
             tetlap.gradient(moved, of, YOUNG, at=2)
 
+    def test_a_check_compares_with_other_runs(self):
+        found = tetlap.gradient(SCENE, ["displacement:block:z", "energy"], [YOUNG, DENSITY], check=True)
+        self.assertNotIn("halved", tetlap.gradient(SCENE, "energy", YOUNG))
+        self.assertEqual(found["halved"].shape, (2, 2))
+        self.assertLess(found["halved"].max(), 1e-8)
+        np.testing.assert_allclose(found["along_by_runs"], found["along_by_derivatives"], rtol=1e-6)
+
     def test_what_has_no_gradient_says_why(self):
         ball = {"name": "ball", "sphere": {"centre": [0, 0, -1], "radius": 1}}
         with self.assertRaisesRegex(tetlap.RunError, "friction on a sphere"):

@@ -61,11 +61,19 @@ def _arrays(found, of, by):
         "matrix_residual": np.array([_number(goal["matrix_residual"]) for goal in goals]),
         "force_residual": found["force_residual"],
         "contact_stiffness": found["contact_stiffness"],
+        **_check_of(goals, rows),
     }
 
 
+def _check_of(goals, rows):
+    if "halved" not in rows[0][0]:
+        return {}
+    along = {key: np.array([_number(goal[key]) for goal in goals]) for key in ("along_by_derivatives", "along_by_runs")}
+    return {"halved": np.array([[_number(cell["halved"]) for cell in row] for row in rows]), **along}
+
+
 def gradient(scene: Scene, of: str | list[str], by: str | list[str], *, set: Settings = None, total: bool = False,  # noqa: A002
-             at: float | None = None) -> dict:
+             at: float | None = None, check: bool = False) -> dict:
     """Runs a static scene or a motion; what quantities are at its end or at other times, and
     their exact derivatives, as a dict of arrays.
 
@@ -78,14 +86,15 @@ def gradient(scene: Scene, of: str | list[str], by: str | list[str], *, set: Set
 
     value (of): the quantities. derivative (of, by): dq/dp. share (of, by): p dq/dp / q. parameter (by): their values. unit and
     parameter_unit: lists of texts. does_not_act: why a derivative is 0, by key. force_residual, adjoint_residual (of),
-    matrix_residual (of): how exact. contact_stiffness: "given", "kept", "follows" or "none". Where there is no number: NaN.
+    matrix_residual (of): how exact. With `check`, from three runs more: halved (of, by), by which share of itself a derivative moves where
+    steps are halved; along_by_derivatives and along_by_runs (of), how q changes along a random direction. contact_stiffness: "given", "kept", "follows" or "none". Where there is no number: NaN.
 
     RunError: the scene has no such gradient, or the run failed; it carries the program's message.
     """
     of = _names(of, "of", "displacement:block:z")
     by = _names(by, "by", "contact.stiffness")
     scene, _, keeper = _place_scene(scene, None)
-    command = [_locate.program(), "gradient", str(scene), "--json", "--by", ",".join(by)]
+    command = [_locate.program(), "gradient", str(scene), "--json", "--by", ",".join(by)] + ["--check"] * bool(check)
     for name in of:
         command += ["--of", name]
     for text in override_texts(set):

@@ -2,6 +2,7 @@
 // Gradients of static scenes against central differences of whole runs, and what has none.
 #include "fem/gradient/gradient.h"
 
+#include "app/gradient/check.h"
 #include "app/gradient/goal.h"
 #include "app/gradient/parameter.h"
 #include "app/gradient/run.h"
@@ -393,6 +394,42 @@ START_TEST(quantities_that_are_not_there_are_refused_by_name) {
 }
 END_TEST
 
+// ---- How far to trust it.
+
+static void check_with(const char *name, const AppGradientWords *words, AppGradientCheck *check,
+                       AppGradientAnswer *answer) {
+  char path[512];
+  snprintf(path, sizeof path, "%s/tests/scenes/%s.yaml", TETLAP_SOURCE_DIR, name);
+  const AppJobOptions options = {.scene_path = path, .is_quiet = true};
+  AppJob job;
+  ck_assert_ok(app_job_open(&job, &options, NULL, NULL));
+  ck_assert_ok(app_gradient_answer(answer, &job.model, words, NULL));
+  ck_assert_ok(app_gradient_check(check, &options, &job.model, words, answer));
+  app_job_close(&job);
+}
+
+START_TEST(a_check_runs_along_a_direction_and_with_half_the_steps) {
+  const AppGradientWords words = {.of = {"displacement:upper:z"},
+                                  .by = {"bodies.lower.material.young", "contact.stiffness"},
+                                  .of_count = 1,
+                                  .by_count = 2};
+  const AppGradientWords rub = {.of = {"displacement:lower:x"}, .by = {"contact.friction"}, 1, 1};
+  AppGradientAnswer answer;
+  AppGradientCheck check;
+  check_with("gradient_blocks", &words, &check, &answer);
+  double value = fabs(answer.gradient.values[0]);
+  ck_assert_double_gt(fabs(check.along[0]), 1e-2 * value);
+  ck_assert_near(check.along[0], check.between[0], 1e-6 * value);
+  for (int p = 0; p < 2; p++) ck_assert_double_le(check.halved[0][p], 1e-9); // an equilibrium has no steps
+  app_gradient_answer_destroy(&answer);
+  check_with("gradient_rub", &rub, &check, &answer);
+  ck_assert_near(check.along[0], check.between[0], 1e-6 * fabs(answer.gradient.values[0]));
+  ck_assert_double_gt(check.halved[0][0], 1e-4); // friction goes another way
+  ck_assert_double_lt(check.halved[0][0], 0.1);
+  app_gradient_answer_destroy(&answer);
+}
+END_TEST
+
 START_TEST(the_command_prints_scaling_laws) {
   // Displacements stay the same where E and the interface's stiffness grow together.
   char command[2048], line[256];
@@ -459,6 +496,7 @@ int main(void) {
   tcase_add_test(test_case, quantities_that_are_not_there_are_refused_by_name);
   tcase_add_test(test_case, what_is_left_unsolved_is_no_gradient);
   tcase_add_test(test_case, a_right_side_that_is_no_number_is_refused);
+  tcase_add_test(test_case, a_check_runs_along_a_direction_and_with_half_the_steps);
   tcase_add_test(test_case, the_command_prints_scaling_laws);
   return suite_run("gradient", test_case, 300);
 }

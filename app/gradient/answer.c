@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/gradient/answer.h"
+
+#include <math.h>
+
+#include "app/gradient/goal.h"
+#include "app/gradient/parameter.h"
+#include "app/gradient/run.h"
+
+static Status prepare(AppGradientAnswer *answer, const FemModel *model, const AppGradientWords *words) {
+  double at = words->at > 0 ? words->at : INFINITY;
+  answer->def = (FemGradientDef){.goals = answer->goals,
+                                 .parameters = answer->parameters,
+                                 .goal_count = words->of_count,
+                                 .parameter_count = words->by_count,
+                                 .follows_choice = words->is_total};
+  for (int g = 0; g < words->of_count; g++)
+    TRY(status_prefix(app_gradient_read_goal(model, words->of[g], at, &answer->goals[g]), "--of"));
+  for (int p = 0; p < words->by_count; p++)
+    TRY(status_prefix(app_gradient_read_parameter(model, words->by[p], &answer->parameters[p]), "--by"));
+  TRY(fem_gradient_check(model, &answer->def));
+  return fem_gradient_is_path(model) ? fem_path_check(model, &answer->def) : STATUS_OK;
+}
+
+// Whether a goal is, at a state that was not seen before.
+static bool is_taken(const AppGradientAnswer *answer, const FemRunProgress *progress) {
+  bool is_due = false;
+  for (int g = 0; g < answer->def.goal_count; g++)
+    is_due = is_due || fem_goal_is_due(&answer->goals[g], progress->system->model, progress->time);
+  return is_due && progress->time > answer->gradient.time;
+}
+
+static Status at_step(void *observer, const FemRunProgress *progress) {
+  AppGradientAnswer *answer = observer;
+  if (fem_gradient_is_path(progress->system->model))
+    return fem_replay_steps_add(&answer->steps, progress->system);
+  if (!is_taken(answer, progress)) return STATUS_OK;
+  return fem_gradient_find(&answer->gradient, progress->system, &answer->def);
+}
+
+Status app_gradient_answer(AppGradientAnswer *answer, const FemModel *model, const AppGradientWords *words,
+                           const volatile sig_atomic_t *stop) {
+  FemRunResult result = {0};
+  FemRunOptions run = {.observe = at_step, .observer = answer, .stop = stop};
+  *answer = (AppGradientAnswer){0};
+  TRY(prepare(answer, model, words));
+  Status status = app_gradient_run(model, &answer->def, &run, &result);
+  if (!status && fem_gradient_is_path(model))
+    status = fem_path_differentiate(&answer->gradient, model, &answer->def, &answer->steps);
+  if (!status && !answer->gradient.values)
+    status = status_fail(STATUS_SOLVER, "the run ended before a goal was taken: no gradient");
+  fem_run_result_destroy(&result);
+  return status;
+}
+
+void app_gradient_answer_destroy(AppGradientAnswer *answer) {
+  fem_gradient_destroy(&answer->gradient);
+  fem_replay_steps_destroy(&answer->steps);
+  for (int g = 0; g < answer->def.goal_count; g++) app_gradient_destroy_goal(&answer->goals[g]);
+}
+
+const char *app_gradient_stiffness(const FemModel *model, const AppGradientWords *words) {
+  const FemContactDef *contact = &model->scene->contact;
+  if (!contact->is_on) return "none";
+  if (contact->stiffness > 0 || contact->law.law.kind != CONTACT_LAW_LINEAR) return "given";
+  return words->is_total ? "follows" : "kept";
+}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "app/gradient/check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/random.h"
+
+enum { TEXT_SIZE = 256, SEED = 35 };
+// Shares of a parameter by which it differs between two runs. A motion chooses its steps anew, which
+// changes g by up to time.tolerance, so it takes a longer way.
+static const double OF_STATIC = 1e-4, OF_MOTION = 1e-2;
+// The error of a step of second order falls by this where it is halved.
+static const double OF_HALF = 8;
+
+// The scene with other values.
+typedef struct Other {
+  AppJobOptions job;
+  char texts[APP_GRADIENT_MOST][TEXT_SIZE];
+} Other;
+
+static Status add(Other *other, const char *key, double value) {
+  int place = other->job.override_count;
+  char *text = other->texts[place % APP_GRADIENT_MOST];
+  if (place >= APP_MAX_OVERRIDES)
+    return status_fail(STATUS_INPUT, "--check changes parameters by --set, of which there are at most %d",
+                       APP_MAX_OVERRIDES);
+  snprintf(text, TEXT_SIZE, "%s=%.17g", key, value);
+  other->job.overrides[other->job.override_count++] = text;
+  return STATUS_OK;
+}
+
+static Status answer_other(const Other *other, const AppGradientWords *words, AppGradientAnswer *answer) {
+  AppJob job;
+  *answer = (AppGradientAnswer){0};
+  TRY(app_job_open(&job, &other->job, NULL, NULL));
+  Status status = app_gradient_answer(answer, &job.model, words, app_job_stop_flag());
+  app_job_close(&job);
+  return status;
+}
+
+// ---- Half the steps.
+
+static Status halve(AppGradientCheck *check, Other *other, const FemModel *model,
+                    const AppGradientWords *words, const AppGradientAnswer *answer) {
+  const FemSceneDef *scene = model->scene;
+  AppGradientAnswer half;
+  TRY(scene->is_static ? add(other, "output.frames", 2 * scene->frames)
+                       : add(other, "time.tolerance", scene->tolerance / OF_HALF));
+  Status status = status_prefix(answer_other(other, words, &half), "--check, with half the steps");
+  for (int g = 0; g < words->of_count && !status; g++)
+    for (int p = 0; p < words->by_count; p++) {
+      int place = g * words->by_count + p;
+      double own = answer->gradient.derivatives[place], now = half.gradient.derivatives[place];
+      check->halved[g][p] = fabs(now - own) / fabs(own);
+    }
+  app_gradient_answer_destroy(&half);
+  return status;
+}
+
+// ---- Along a direction.
+
+typedef struct Direction {
+  double step;                    // that is taken along it
+  double ways[APP_GRADIENT_MOST]; // of each parameter, in its unit
+} Direction;
+
+static Direction draw_direction(const FemModel *model, const AppGradientWords *words,
+                                const AppGradientAnswer *answer) {
+  Direction direction = {.step = model->scene->is_static ? OF_STATIC : OF_MOTION};
+  Random random = random_seeded(SEED, 0);
+  bool keeps = strcmp(app_gradient_stiffness(model, words), "kept") == 0;
+  for (int p = 0; p < words->by_count; p++) {
+    const FemParameter *parameter = &answer->parameters[p];
+    bool chooses = parameter->kind == FEM_PARAMETER_YOUNG || parameter->kind == FEM_PARAMETER_POISSON;
+    double share = random_between(&random, -1, 1);
+    if (!(chooses && keeps)) direction.ways[p] = share * fem_parameter_value(model, parameter);
+  }
+  return direction;
+}
+
+static Status add_along(AppGradientCheck *check, Other *other, const Direction *direction, double side,
+                        const FemModel *model, const AppGradientWords *words,
+                        const AppGradientAnswer *answer) {
+  AppGradientWords values = *words;
+  AppGradientAnswer there;
+  for (int p = 0; p < words->by_count; p++) {
+    double value = fem_parameter_value(model, &answer->parameters[p]);
+    if (direction->ways[p] != 0)
+      TRY(add(other, words->by[p], value + side * direction->step * direction->ways[p]));
+  }
+  values.by_count = 0;
+  Status status = status_prefix(answer_other(other, &values, &there), "--check, along a direction");
+  for (int g = 0; g < words->of_count && !status; g++)
+    check->between[g] += side * there.gradient.values[g] / (2 * direction->step);
+  app_gradient_answer_destroy(&there);
+  return status;
+}
+
+Status app_gradient_check(AppGradientCheck *check, const AppJobOptions *job, const FemModel *model,
+                          const AppGradientWords *words, const AppGradientAnswer *answer) {
+  Other half = {.job = *job}, ahead = {.job = *job}, behind = {.job = *job};
+  const Direction direction = draw_direction(model, words, answer);
+  *check = (AppGradientCheck){0};
+  for (int g = 0; g < words->of_count; g++)
+    for (int p = 0; p < words->by_count; p++)
+      check->along[g] += answer->gradient.derivatives[g * words->by_count + p] * direction.ways[p];
+  TRY(halve(check, &half, model, words, answer));
+  TRY(add_along(check, &ahead, &direction, 1, model, words, answer));
+  return add_along(check, &behind, &direction, -1, model, words, answer);
+}
