@@ -157,7 +157,7 @@ function build(data, kept) {
     data.comparison && buildComparison(data),
     plots.length > 0 && h("section.block", { id: "plots" }, h("h2", "Over time"), h(".plots", plots.map((plot) => plot.element))),
     buildContacts(runs),
-    data.verdict && buildVerdict(data.verdict),
+    data.verdict && buildVerdict(data.verdict, state),
     data.sweep && buildSweep(data.sweep, state, createState),
     data.pareto && buildFrontier(data.pareto, state),
     data.stress && buildStress(data.stress),

@@ -55,7 +55,7 @@ const judged = (model, steps) => ({
     motion: grade(steps <= 1.5, steps <= 1.5 ? "" : `edge: ${steps} steps over those of clip, at most 1.5 is asked`, condition("steps over those of clip", 1.5, steps, steps <= 1.5, "edge")),
   },
   contract: { balance: 1e-16, refused: 2 },
-  pairs: { paper_status: 0.998, moment_error: 0.1 / steps },
+  pairs: { paper_status: 0.998, moment_error: 0.1 / steps, volume_error: 0.02 / steps },
   unseen: { nodal_force_error: null },
   runs: [{ scene: "edge", kind: "<edges> cross", outcome: steps <= 1.5 ? "finished" : "passed through", share_reached: 1, nodal_force_error: 0.01 * steps, path_error: 1e-3 * steps, momentum_gap: null, steps_ratio: steps }],
 });
@@ -506,6 +506,12 @@ const verdictTests = {
     assert.ok(rows.includes("Classes that could not be asked22"), rows.join("\n"));
     assert.ok(rows.some((row) => row.startsWith("edge<edges> crossminepassed through100\u2009%4.76\u2009%")), rows.join("\n"));
     assert.deepEqual(await textsOf("#verdict .outcome"), ["passed through", "finished"]);
+  },
+  async "a verdict draws errors on pairs against errors in place, where two models have both"(page) {
+    const labels = await page.eval(`[...document.querySelectorAll("#verdict .point")].map((one) => one.getAttribute("aria-label"))`);
+    assert.deepEqual(labels, ["mine: 0.42\u2009%, error 4.76\u2009%", "geo: 1.85\u2009%, error 1.08\u2009%"]);
+    await page.eval(`document.querySelector("#verdict .point").focus()`);
+    assert.match(await page.eval(`document.querySelector("#verdict .tip").textContent`), /nodal forces, worst4\.76\u2009%sceneedgeruns that ended0 of 1/);
   },
 };
 

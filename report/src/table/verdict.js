@@ -3,6 +3,7 @@
 // measured of it on hard pairs, on pairs that no training saw, and in place.
 
 import { count, format, h, nameCell, scrolled, swatchOfHue } from "../dom.js";
+import { buildPlace } from "../plot/place.js";
 import { HUES } from "../view/colour.js";
 
 const USES = {
@@ -126,7 +127,7 @@ function placeTable(models) {
 
 export const verdictTitle = ({ models }) => (models.length === 1 ? `What ${models[0].model} is fit for` : "What the models are fit for");
 
-export function buildVerdict(verdict) {
+export function buildVerdict(verdict, state) {
   const { models } = verdict;
   const isQuick = Boolean(verdict.quick);
   return h(
@@ -135,6 +136,7 @@ export function buildVerdict(verdict) {
     h("h2", "Verdict"),
     h("p.lead", "Each grade is yes, or no with the first condition that is not met. What could not be measured is not met. The reference is clip; of clip itself, clip-scalar.", isQuick && " A quick verdict: fewer pairs, and five of the twelve scenes."),
     gradeTable(models),
+    buildPlace(models, state),
     conditionTable(models),
     figureTable("Contract: the worst of all classes of hard pairs", models, CONTRACT.map(([...row]) => ["contract", ...row])),
     figureTable("Pairs that no training saw", models, PAIRS),
