@@ -81,8 +81,10 @@ typedef struct ContactStickNode {
   double slid[3];        // F_a G_a, since it was last touched [m]
   double way;            // Σ |s_trial − s| so far [m]
   double work;           // dissipated at it so far [J]
-  bool slips;
+  bool slips;    // its stretch is cut off: k |s_trial| > L
   bool advances; // the way since the last accepted state goes along s_trial
+  bool slides;   // slips, or did up to the last accepted state and advances: where its press grows a little,
+                 // what slides sticks for a step
 } ContactStickNode;
 
 // A corner of a pair that is a slave: which node, with which share of it.
@@ -140,9 +142,6 @@ Status contact_stick_reserve(ContactStick *stick, int pair_count);
 // forces and areas.
 Status contact_stick_eval(ContactStick *stick, const ContactStickLast *last, int pair_count,
                           const double *positions, const bool *is_resting);
-
-// Whether it counts as sliding, not sticking: its pull is 0.98 of its limit or more.
-bool contact_stick_slides(const ContactStickNode *node);
 
 // Of the last evaluation.
 // By the vertices as given: (vertex_count, 3) without stars.

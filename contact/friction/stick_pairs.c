@@ -50,7 +50,7 @@ static void meet_ball(const ContactShape *shape, double time, const double tet[1
                       const ContactFieldPair *field, ContactStickPair *pair) {
   double centre[3], deepest[4], middle[3] = {0, 0, 0};
   double whole = fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9))) / 6,
-         share = field->volume / (field->volume + CONTACT_SLIVER * whole);
+         share = field->volume / (field->volume + CONTACT_FLAT * whole);
   vec3_store(centre, contact_shape_point(shape, time));
   contact_ball_nearest(tet, centre, deepest);
   for (int v = 0; v < 4; v++) {

@@ -83,7 +83,7 @@ static double face_in_shape(const ContactShape *shape, const double cell[12], in
     normal = vec3_scale(-1, normal);
   double share = looking(normal, direction);
   if (!(share > 0)) return 0;
-  return share * area_in_shape(shape, &triangle, CONTACT_SLIVER * area_of(&triangle));
+  return share * area_in_shape(shape, &triangle, CONTACT_FLAT * area_of(&triangle));
 }
 
 // Of all cells of the tetrahedron that the pair's first one stands for.

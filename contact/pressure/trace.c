@@ -4,11 +4,9 @@
 #include <math.h>
 
 #include "base/vec3.h"
+#include "contact/limits.h"
 #include "contact/shape/shape.h"
 
-// What is a smaller share of the other counts as nothing: how far samples spread along a direction, squared,
-// of their squared distance, or how far a line passes beside a cell, of the cell.
-static const double NOTHING = 1e-3;
 // A value is at most this many times the mean of its samples: of one that falls to 0 within them it is 1.5.
 static const double MOST = 2;
 
@@ -54,10 +52,10 @@ static double gap_to_cell(const ContactLayout *layout, const double *positions, 
     lambda[0] -= lambda[k + 1], mu[0] -= mu[k + 1];
   }
   for (int v = 0; v < 4; v++) {
-    double at = -(lambda[v] + NOTHING) / mu[v];
+    double at = -(lambda[v] + CONTACT_FLAT) / mu[v];
     if (mu[v] > 0) least = fmax(least, at);
     if (mu[v] < 0) most = fmin(most, at);
-    if (mu[v] == 0 && !(lambda[v] >= -NOTHING)) return INFINITY;
+    if (mu[v] == 0 && !(lambda[v] >= -CONTACT_FLAT)) return INFINITY;
   }
   return least <= most ? fmax(0, -most) : INFINITY;
 }
@@ -206,7 +204,7 @@ static double value_at(const ContactTrace *trace, const Plane *plane, int value)
   for (int k = 0; k < 2; k++) {
     double together = vec3_dot(vec3_at(trace->moments[value]), plane->axes[k]) / trace->weight -
                       mean * plane->mean[k],
-           spread = plane->spread[k] + NOTHING * plane->mean[k] * plane->mean[k];
+           spread = plane->spread[k] + CONTACT_FLAT * plane->mean[k] * plane->mean[k];
     if (spread > 0) at -= together / spread * plane->mean[k];
   }
   return fmin(fmax(at, 0), MOST * mean);

@@ -396,8 +396,8 @@ static bool lists_are_equal(const ContactCandidateList *a, const ContactCandidat
          (a->count == 0 || memcmp(a->pairs, b->pairs, (size_t)a->count * sizeof *a->pairs) == 0);
 }
 
-// At the speeds with which motions were expected in `step`, the list holds for so long, less a reserve for
-// what accelerates; a new list, for longer.
+// At the speeds with which motions were expected in `step`, the list holds for so long; a new list, for
+// longer.
 static double time_left(const ContactCandidates *candidates, const ContactLayout *layout, double step) {
   double left = INFINITY;
   for (int f = 0; f < layout->interface_count && step > 0; f++) {
@@ -405,7 +405,7 @@ static double time_left(const ContactCandidates *candidates, const ContactLayout
     if (candidates->is_left_out[f]) continue;
     double expected = contact_motion_approach(candidates->expected, interface),
            free = candidates->list.margins[f] - contact_motion_approach(candidates->motions, interface);
-    if (expected > 0) left = fmin(left, CONTACT_MARGIN_USED * free / expected * step);
+    if (expected > 0) left = fmin(left, free / expected * step);
   }
   return left;
 }

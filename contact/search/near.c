@@ -9,8 +9,8 @@
 #include "contact/search/bounds.h"
 #include "overlap/separation.h"
 
-// As shares of the margin: the least skin, and one that is no longer worth a list.
-static const double THINNEST = 1.0 / 64, THICKEST = 1.0 / 4;
+// The least skin, of the margin.
+static const double THINNEST = 1.0 / 64;
 
 Status contact_near_create(ContactNear *near, const ContactLayout *layout) {
   size_t cells = (size_t)layout->mesh.cell_count;
@@ -151,13 +151,11 @@ Status contact_near_update(ContactNear *near, const ContactLayout *layout,
                            const ContactCandidates *candidates, double time, const double *positions) {
   double next = longest_approach(layout, candidates, candidates->expected);
   if (near->searches != candidates->searches) near->is_made = false;
-  if (near->is_made &&
-      used(near, layout, candidates, time, positions) + next <= CONTACT_MARGIN_USED * near->skin)
-    return STATUS_OK;
+  if (near->is_made && used(near, layout, candidates, time, positions) + next <= near->skin) return STATUS_OK;
   near->is_made = false;
   near->searches = candidates->searches;
   double skin = fmax(CONTACT_STEPS_AHEAD * next, THINNEST * layout->margin);
-  if (!(skin <= THICKEST * layout->margin) || candidates->list.count == 0) return STATUS_OK;
+  if (!(skin < layout->margin) || candidates->list.count == 0) return STATUS_OK;
   near->skin = skin;
   return make(near, layout, &candidates->list, time, positions);
 }

@@ -270,7 +270,7 @@ void contact_ball_press(const double tet[12], const double centre[3], double rad
   double whole = fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9))) / 6;
   double bound = rest_volume / whole / radius * *volume; // with it no eigenvalue is negative but by rounding
   for (int r = 0; r < 12; r++) hessian[13 * r] += bound;
-  contact_definite_mend(hessian, CONTACT_DEFINITE_ROUGH);
+  contact_definite_mend(hessian);
   for (int r = 0; r < 12 && is_full; r++) hessian[13 * r] -= bound;
 }
 

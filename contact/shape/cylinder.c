@@ -405,7 +405,7 @@ void contact_cylinder_press(const ContactCylinder *cylinder, const double tet[12
   double det = vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9));
   double bound = det == 0 ? 0 : 6 * rest_volume / fabs(det) / cylinder->round * *volume;
   for (int r = 0; r < 12 && !is_full; r++) hessian[13 * r] += bound;
-  if (!is_full) contact_definite_mend(hessian, CONTACT_DEFINITE_ROUGH);
+  if (!is_full) contact_definite_mend(hessian);
 }
 
 // The square of the distance of the axis from an edge, as seen along z.

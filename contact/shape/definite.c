@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/vec3.h"
+#include "contact/limits.h"
 
 enum { N = CONTACT_DEFINITE_SIZE };
 
@@ -87,9 +88,9 @@ static void diagonalise(double matrix[144], double vectors[144]) {
   }
 }
 
-void contact_definite_mend(double matrix[144], double tolerance) {
+void contact_definite_mend(double matrix[144]) {
   double largest = largest_diagonal(matrix), values[144], vectors[144];
-  if (!(largest > 0) || is_definite(matrix, tolerance * largest)) return;
+  if (!(largest > 0) || is_definite(matrix, CONTACT_FLAT * largest)) return;
   memcpy(values, matrix, sizeof values);
   diagonalise(values, vectors);
   for (int i = 0; i < N; i++)

@@ -6,11 +6,6 @@
 
 enum { CONTACT_DEFINITE_SIZE = 12 };
 
-// What differences may leave of a negative eigenvalue, as a share of the largest diagonal entry. In a flat
-// cell rounding leaves more, for the gradient's own is divided by the step and grows with rest volume over
-// volume.
-#define CONTACT_DEFINITE_ROUGH 1e-4
-
 // The gradient (12) at a tetrahedron (4, 3).
 typedef void ContactDefiniteGradient(const void *self, const double tet[12], double gradient[12]);
 
@@ -18,9 +13,9 @@ typedef void ContactDefiniteGradient(const void *self, const double tet[12], dou
 void contact_definite_differentiate(ContactDefiniteGradient *gradient, const void *self, const double tet[12],
                                     double matrix[144]);
 
-// Where `matrix` (12, 12), symmetric, has an eigenvalue below about −`tolerance` times its largest diagonal
+// Where `matrix` (12, 12), symmetric, has an eigenvalue below about −CONTACT_FLAT times its largest diagonal
 // entry, all negative ones become 0: the nearest positive semidefinite matrix in Frobenius' norm (Higham
-// 1988).
-void contact_definite_mend(double matrix[144], double tolerance);
+// 1988). Less is what differences leave.
+void contact_definite_mend(double matrix[144]);
 
 #endif

@@ -19,6 +19,10 @@ typedef struct Facets {
   double area, round_area, hollow_area;
 } Facets;
 
+// A body is round, or hollow, if half of one in so many parts of its surface is, and its edge is the one below
+// which one in so many is.
+enum { PARTS = 10 };
+
 // A symmetric form of the plane of a facet.
 typedef struct Form {
   double uu, uv, vv;
@@ -128,7 +132,7 @@ static double edge_of(const ContactSmooth *smooth, const bool *held, bool is_fla
   for (int f = 0; f < smooth->skin.face_count && is_flat; f++)
     if (!is_held(smooth, held, f))
       facets->edges[facets->edge_count++] = (Weighed){sqrt(2 * smooth->skin.faces[f].area), 1};
-  return quantile(facets->edges, facets->edge_count, 10);
+  return quantile(facets->edges, facets->edge_count, PARTS);
 }
 
 static Status look_at(const ContactSmooth *smooth, const bool *held, Facets *facets,
@@ -140,7 +144,7 @@ static Status look_at(const ContactSmooth *smooth, const bool *held, Facets *fac
   if (!facets->edges || !facets->round || !facets->hollow) return status_no_memory("the curvature of a body");
   for (int f = 0; f < smooth->skin.face_count; f++)
     if (!is_held(smooth, held, f)) add_facet(smooth, f, facets);
-  double least = facets->area / 20;
+  double least = 0.5 * facets->area / PARTS;
   if (facets->round_area > least) roundness->round = quantile(facets->round, facets->round_count, 2);
   if (facets->hollow_area > least) roundness->hollow = quantile(facets->hollow, facets->hollow_count, 2);
   roundness->edge = edge_of(smooth, held, roundness->round == 0 && roundness->hollow == 0, facets);

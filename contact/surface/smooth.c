@@ -151,7 +151,7 @@ bool contact_smooth_cut(const ContactSmooth *smooth, int tet, ContactSmoothCut *
 static bool is_sound(const ContactSmooth *smooth, const Tet *tet, const ContactSmoothCut *cut) {
   Vec3 x[4];
   for (int v = 0; v < 4; v++) x[v] = rest_of(smooth, tet->corners[v]);
-  double least = CONTACT_SLIVER * fabs(vec3_det4(x[0], x[1], x[2], x[3]));
+  double least = CONTACT_FLAT * fabs(vec3_det4(x[0], x[1], x[2], x[3]));
   Vec3 o = cut->has_inside ? inside_of(smooth, tet, cut) : x[0];
   for (int c = 0; c < cut->count; c++) {
     const int *cell = cut->cells[c];

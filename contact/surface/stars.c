@@ -112,24 +112,23 @@ static void weigh_fan(const FaceLoad *load, Vec3 at, double weights[6]) {
 }
 
 static void weigh_centre(const Vec3 x[NODE_COUNT], int face, double weights[NODE_COUNT]) {
-  enum {
-    ROUNDS = 20
-  }; // the centre moves the areas by a share of the edges' offsets, so rounds converge fast
   Face nodes = face_of(face);
   FaceLoad load = {.share = {0}};
-  double own[6];
-  Vec3 at = {0, 0, 0};
+  double own[6], moved = INFINITY, before;
+  Vec3 at = {0, 0, 0}, from;
   for (int n = 0; n < 6; n++) load.x[n] = x[nodes.nodes[n]];
   load.normal = vec3_cross(vec3_sub(load.x[1], load.x[0]), vec3_sub(load.x[2], load.x[0]));
   load.normal = vec3_scale(1 / vec3_length(load.normal), load.normal);
   add_quadratic_shares(&load);
   leave_out_slivers(&load);
   for (int n = 0; n < 3; n++) at = vec3_add(at, vec3_scale(1.0 / 3, load.x[n]));
-  for (int round = 0; round < ROUNDS; round++) {
+  do { // the centre moves the areas by a share of the edges' offsets, so it converges fast, until all is rounding
+    from = at, before = moved;
     weigh_fan(&load, at, own);
     at = (Vec3){0, 0, 0};
     for (int n = 0; n < 6; n++) at = vec3_add(at, vec3_scale(own[n], load.x[n]));
-  }
+    moved = vec3_length(vec3_sub(at, from));
+  } while (moved < before);
   memset(weights, 0, NODE_COUNT * sizeof *weights);
   for (int n = 0; n < 6; n++) weights[nodes.nodes[n]] = own[n];
 }
@@ -179,7 +178,7 @@ static void cut_face(Star *star, int face, bool is_outer) {
 // Cuts an element with these faces on the surface. False: it is so curved that a cell would be flat or inside
 // out.
 static bool make_star(Star *star, const Vec3 x[NODE_COUNT], unsigned outer) {
-  double least = CONTACT_SLIVER * vec3_det4(x[0], x[1], x[2], x[3]);
+  double least = CONTACT_FLAT * vec3_det4(x[0], x[1], x[2], x[3]);
   memset(star->weights, 0, sizeof star->weights);
   memcpy(star->x, x, NODE_COUNT * sizeof *x);
   star->count = 0, star->outer = outer;

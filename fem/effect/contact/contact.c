@@ -14,6 +14,7 @@
 #include "fem/effect/effect.h"
 #include "fem/model/compliance.h"
 #include "fem/model/laws.h"
+#include "fem/model/limits.h"
 #include "fem/scene/drive.h"
 #include "fem/scene/obstacle.h"
 #include "overlap/source.h"
@@ -243,8 +244,9 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   return STATUS_OK;
 }
 
+// Less a reserve for what accelerates.
 static double longest_step(const void *self) {
-  return contact_system_longest_step(((const Contact *)self)->system);
+  return (1 - FEM_RESERVE) * contact_system_longest_step(((const Contact *)self)->system);
 }
 
 static void report(void *self, const FemState *state, Record *counters) {

@@ -162,11 +162,11 @@ static Status solve_following(FemIdaSolver *solver, double *x) {
                           .name = solver->ops->name,
                           .tolerance = fmax(fmin(goal, FEM_SOLVED), FEM_ROUNDING),
                           .by_residual = true,
-                          .limit = FEM_FACTOR_SOLUTIONS / 2};
+                          .limit = FEM_NEWTON_ITERATIONS};
   const FemPart *part = solver->part;
   double *right = solver->right, *left = x;
   shift(solver);
-  if (solver->followed >= FEM_FACTOR_SOLUTIONS) {
+  if (solver->followed >= 2 * FEM_NEWTON_ITERATIONS) {
     TRY(catch_up(solver));
     if (!solver->ops->be_rough) return solve_condensed(solver, x);
   }
