@@ -9,6 +9,7 @@
 #include "fem/model/division.h"
 #include "fem/model/drivers.h"
 #include "fem/model/parts.h"
+#include "fem/model/work.h"
 #include "fem/scene/meshes.h"
 #include "fem/scene/select.h"
 
@@ -223,6 +224,7 @@ static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
   TRY(fem_model_parts_measure(model));
   TRY(add_probes(model, meshes));
   TRY(fem_model_divide(model));
+  if (!model->share) TRY(fem_model_work_count(model));
   return measure(model, meshes);
 }
 

@@ -22,6 +22,7 @@ typedef struct FemModelBody {
   int quadratic_begin, quadratic_end;
   FemElementKind element;
   double mass; // [kg]
+  double cube; // whose factor costs as much a vertex [vertices] (work.h)
   bool is_obstacle;
 } FemModelBody;
 

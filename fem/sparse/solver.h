@@ -7,6 +7,7 @@
 #include <stdbool.h>
 
 #include "fem/sparse/matrix.h"
+#include "fem/sparse/pattern.h"
 
 typedef enum FemSolverKind {
   FEM_SOLVER_AUTO,
@@ -86,6 +87,9 @@ void fem_solver_provide(const FemSolverOps *const table[FEM_SOLVER_COUNT]);
 
 // Whether the library of amg and gamg can be loaded; loads it.
 bool fem_solver_has_multigrid(void);
+
+// How many operations `cholmod` would take to factorise a matrix with one unknown a vertex.
+Status fem_solver_factor_work(const FemPattern *pattern, double *work);
 
 // What `create` is given for a scene's tolerance, 0: not said.
 double fem_solver_tolerance(const FemSolverOps *ops, double said);

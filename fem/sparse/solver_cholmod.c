@@ -323,6 +323,49 @@ static Status count_negative(const FemMatrix *matrix, int *count) {
   return status;
 }
 
+// The graph of a pattern whose vertices have one unknown each.
+static Status copy_pattern(const FemPattern *pattern, VertexGraph *graph) {
+  const int nodes = graph->node_count = fem_pattern_vertex_count(pattern);
+  int count, end = 0;
+  for (int v = 0; v < nodes; v++) {
+    fem_pattern_above(pattern, v, &count);
+    end += count + 1;
+  }
+  graph->begin = memory_zeroed((size_t)nodes + 1, sizeof *graph->begin);
+  graph->row = memory_zeroed((size_t)end, sizeof *graph->row);
+  graph->order = memory_zeroed((size_t)nodes, sizeof *graph->order);
+  if (!graph->begin || !graph->row || !graph->order) return status_no_memory("the graph of the mesh");
+  end = 0;
+  for (int v = 0; v < nodes; v++) {
+    const int *above = fem_pattern_above(pattern, v, &count);
+    graph->begin[v] = end;
+    graph->row[end++] = v;
+    for (int k = 0; k < count; k++) graph->row[end++] = above[k];
+  }
+  graph->begin[nodes] = end;
+  return STATUS_OK;
+}
+
+static Status count_work(CholmodSolver *solver, const FemPattern *pattern, VertexGraph *graph, double *work) {
+  cholmod_factor *symbolic;
+  TRY(copy_pattern(pattern, graph));
+  TRY(order_graph(solver, graph));
+  TRY(find_fronts(solver, graph, &symbolic));
+  *work = solver->common.fl;
+  cholmod_free_factor(&symbolic, &solver->common);
+  return STATUS_OK;
+}
+
+Status fem_solver_factor_work(const FemPattern *pattern, double *work) {
+  void *solver;
+  VertexGraph graph = {0};
+  Status status = create(&solver, 1, 0);
+  if (!status) status = count_work(solver, pattern, &graph, work);
+  free_graph(&graph);
+  destroy(solver);
+  return status;
+}
+
 static void be_rough(void *self) {
   ((CholmodSolver *)self)->is_rough = true;
 }

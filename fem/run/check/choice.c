@@ -1,40 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A factor of a cube of n vertices takes n² operations, of a bar or a plate of extents L ≥ W ≥ H fewer by
-// √(WH)/L: L/√(WH) pieces with separators of n WH/V^(2/3) vertices. So a model is as hard as a cube of √(Σ n²
-// √(WH)/L) vertices.
 #include "fem/run/check/choice.h"
 
 #include <math.h>
 
+#include "fem/model/work.h"
+
 // Vertices of two cubes in contact from which on `amg` takes less processor time than `cholmod` in motion,
 // PETSc's start of 0.2 s included; in statics from twice as many.
-static const double AMG_IS_FASTER_FROM = 2500; // not chosen: measured
+static const double AMG_IS_FASTER_FROM = FEM_WORK_UNCOUNTED;
 // Twice that, since a factor cannot fail to converge.
 static const double MOST_IN_MOTION = 2 * AMG_IS_FASTER_FROM, MOST_IN_STATICS = 2 * MOST_IN_MOTION;
 // A scene whose matrix never changes is factorised once a step size.
 static const double MOST_IF_LINEAR = 40000;
 // As volumes become incompressible multigrid takes ever more iterations.
 static const double SOFTEST_POISSON = 0.47;
-// Factors beyond this many unknowns take gigabytes.
-static const double MOST_UNKNOWNS_TO_FACTORISE = 200000;
 
-static double hardness(const FemModel *model, const FemModelBody *body) {
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  for (int v = body->vertex_begin; v < body->vertex_end; v++)
-    for (int c = 0; c < 3; c++) {
-      low[c] = fmin(low[c], model->rest[3 * (size_t)v + (size_t)c]);
-      high[c] = fmax(high[c], model->rest[3 * (size_t)v + (size_t)c]);
-    }
-  double size[3] = {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
-  double longest = fmax(size[0], fmax(size[1], size[2])), count = body->vertex_end - body->vertex_begin;
-  if (!(longest > 0)) return 0;
-  return count * count * sqrt(size[0] * size[1] * size[2] / longest) / longest;
-}
-
+// Vertices of a cube whose factor is as dear, beside multigrid, as those of all bodies that move.
 static double equivalent_cube(const FemModel *model, const FemNumbering *now) {
   double sum = 0;
   for (int b = 0; b < model->body_count; b++)
-    if (!model->bodies[b].is_obstacle && !(now && now->is_held[b])) sum += hardness(model, &model->bodies[b]);
+    if (!model->bodies[b].is_obstacle && !(now && now->is_held[b]))
+      sum += model->bodies[b].cube * model->bodies[b].cube;
   return sqrt(sum);
 }
 
@@ -46,7 +32,7 @@ static bool is_nearly_incompressible(const FemModel *model) {
 
 static FemSolverKind choose(const FemModel *model, const FemNumbering *now, const char **why) {
   const FemSceneDef *scene = model->scene;
-  bool is_large = (now ? now->count : model->free_count) > MOST_UNKNOWNS_TO_FACTORISE;
+  bool is_large = (now ? now->count : model->free_count) > FEM_WORK_UNKNOWNS;
   bool is_linear = fem_model_has_linear_materials(model) && !scene->contact.is_on;
   double cube = equivalent_cube(model, now);
   double most = is_linear ? MOST_IF_LINEAR : scene->is_static ? MOST_IN_STATICS : MOST_IN_MOTION;

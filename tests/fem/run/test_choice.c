@@ -24,6 +24,7 @@ static const Case cases_of[] = {
     {.cells = {18, 18, 18}, .expected = FEM_SOLVER_CHOLMOD, .why = "cheap", .is_linear = true},
     {.cells = {18, 18, 18}, .expected = FEM_SOLVER_CHOLMOD, .why = "incompressible", .poisson = 0.49},
     {.cells = {140, 6, 6}, .expected = FEM_SOLVER_CHOLMOD, .why = "cheap", .length = 20},
+    {.cells = {40, 40, 3}, .expected = FEM_SOLVER_CHOLMOD, .why = "cheap"}, // a plate
     {.cells = {18, 18, 18}, .expected = FEM_SOLVER_PCG, .why = "", .said = FEM_SOLVER_PCG},
 };
 

@@ -467,6 +467,27 @@ START_TEST(an_order_of_elimination_is_kept_while_its_fill_is_near) {
 }
 END_TEST
 
+// Column k of the factor of a full matrix has n − k entries, each of which is multiplied by all of them.
+START_TEST(the_work_of_a_factor_is_counted) {
+  enum { FULL = 20 };
+  int all[FULL];
+  double one, two;
+  FemPattern *pattern;
+  for (int v = 0; v < FULL; v++) all[v] = v;
+  ck_assert_ok(fem_pattern_create(&pattern, 2 * FULL));
+  ck_assert_ok(fem_solver_factor_work(pattern, &one));
+  ck_assert_double_eq(one, 2 * FULL);
+  ck_assert_ok(fem_pattern_add_clique(pattern, FULL, all, NULL));
+  ck_assert_ok(fem_solver_factor_work(pattern, &one));
+  ck_assert_double_eq(one, FULL + FULL * (FULL + 1) * (2 * FULL + 1) / 6);
+  for (int v = 0; v < FULL; v++) all[v] = FULL + v;
+  ck_assert_ok(fem_pattern_add_clique(pattern, FULL, all, NULL));
+  ck_assert_ok(fem_solver_factor_work(pattern, &two));
+  ck_assert_double_eq(two, 2 * (one - FULL));
+  fem_pattern_destroy(pattern);
+}
+END_TEST
+
 START_TEST(every_failed_allocation_is_an_error) {
   Bar bar = bar_create(2, 3);
   for (int kind = 0; kind < KIND_COUNT; kind++) {
@@ -504,6 +525,7 @@ int main(void) {
   tcase_add_test(cases, a_singular_full_matrix_is_a_retry);
   tcase_add_test(cases, a_grown_pattern_must_be_analysed_anew);
   tcase_add_test(cases, an_order_of_elimination_is_kept_while_its_fill_is_near);
+  tcase_add_test(cases, the_work_of_a_factor_is_counted);
   tcase_add_test(cases, every_failed_allocation_is_an_error);
   return suite_run("solver", cases, 60);
 }
