@@ -66,12 +66,15 @@ bool text_lists(const char *list, const char *word) {
   return false;
 }
 
-// The word that begins at `text`, without the blanks around it; `*text` moves behind it and its comma, or
-// becomes NULL.
+// The word that begins at `text`, without the blanks around it and the backslashes before commas of its own;
+// `*text` moves behind it and its comma, or becomes NULL.
 static char *cut_word(char **text) {
-  char *word = *text + strspn(*text, " \t"), *comma = word + strcspn(word, ",");
-  char *end = comma;
-  *text = *comma ? comma + 1 : NULL;
+  char *word = *text + strspn(*text, " \t"), *end = word, *from = word;
+  for (; *from && *from != ','; from++) {
+    if (from[0] == '\\' && from[1] == ',') from++;
+    *end++ = *from;
+  }
+  *text = *from ? from + 1 : NULL;
   while (end > word && (end[-1] == ' ' || end[-1] == '\t')) end--;
   *end = 0;
   return word;
@@ -96,6 +99,11 @@ void text_append(char *buffer, size_t size, size_t *used, const char *format, ..
   va_end(args);
   if (written > 0) *used += (size_t)written;
   if (*used >= size) *used = size - 1;
+}
+
+void text_append_word(char *buffer, size_t size, size_t *used, const char *word) {
+  if (*used > 0) text_append(buffer, size, used, ",");
+  for (; *word; word++) text_append(buffer, size, used, "%s%c", *word == ',' ? "\\" : "", *word);
 }
 
 void text_place(const char *text, size_t offset, int *line, int *column) {

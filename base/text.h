@@ -34,13 +34,16 @@ bool text_lists(const char *list, const char *word);
 const char *text_next(const char *list, char word[TEXT_MAX_WORD]);
 
 // Cuts a list at its commas, in place, and leaves out the blanks around its words: `words` (most) points into
-// `list`. Returns how many there are; 0: one of them is empty, or the list is; −1: there are more than
-// `most`.
+// `list`. `\,` is a comma within a word. Returns how many there are; 0: one of them is empty, or the list is;
+// −1: there are more than `most`.
 int text_split(char *list, const char **words, int most);
 
 // Writes like snprintf after the first `*used` characters and moves `*used`; what does not fit is cut.
 void text_append(char *buffer, size_t size, size_t *used, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+
+// Adds a word to a list as text_split takes it.
+void text_append_word(char *buffer, size_t size, size_t *used, const char *word);
 
 // The line and the column (both from 1, columns in characters of UTF-8) of a byte of a text.
 void text_place(const char *text, size_t offset, int *line, int *column);

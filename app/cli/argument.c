@@ -66,15 +66,14 @@ int app_argument_list(struct argp_state *state, const char *option, char *text, 
 const char *app_argument_words(struct argp_state *state, const char *option, char *text,
                                const char *example) {
   const char *words[MOST_WORDS];
+  const size_t size = strlen(text) + 1; // the list becomes no longer
+  char *list = strdup(text);
+  if (!list) argp_error(state, "--%s: there is no memory for the list", option);
+  size_t used = 0;
   int count = app_argument_list(state, option, text, example, MOST_WORDS, words);
-  char *end = text;
-  for (int w = 0; w < count; w++) {
-    size_t length = strlen(words[w]);
-    if (w > 0) *end++ = ',';
-    memmove(end, words[w], length);
-    end += length;
-  }
-  *end = 0;
+  for (int w = 0; w < count; w++) text_append_word(list, size, &used, words[w]);
+  memcpy(text, list, size);
+  free(list);
   return text;
 }
 

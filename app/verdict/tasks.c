@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/files/data.h"
+#include "base/text.h"
 
 const AppVerdictScene app_verdict_scenes[APP_VERDICT_SCENES] = {
     {"press", "static", true},        {"indent", "static, stick and slip", true},
@@ -27,6 +28,14 @@ static Status write_text(char *text, const char *format, ...) {
   int length = vsnprintf(text, PATH_MAX, format, values);
   va_end(values);
   return length < PATH_MAX ? STATUS_OK : status_fail(STATUS_INPUT, "%.200s…: the path is too long", text);
+}
+
+// A list of models; `first` may be NULL.
+static Status write_list(char *list, const char *first, const char *source) {
+  size_t used = 0;
+  if (first) text_append_word(list, PATH_MAX, &used, first);
+  text_append_word(list, PATH_MAX, &used, source);
+  return used < PATH_MAX - 1 ? STATUS_OK : status_fail(STATUS_INPUT, "%.200s…: the name is too long", source);
 }
 
 typedef struct Words {
@@ -66,7 +75,7 @@ static Status fill_scene(const AppVerdictPlan *plan, AppVerdictTask *task, Words
   task->name = scene->name;
   snprintf(relative, sizeof relative, "examples/verdict/%s.yaml", scene->name);
   TRY(data_find(relative, task->texts[2], PATH_MAX));
-  TRY(write_text(task->texts[3], "%s,%s", reference, plan->source));
+  TRY(write_list(task->texts[3], reference, plan->source));
   TRY(write_text(task->texts[4], "%s/%s/%s", plan->directory, plan->name, scene->name));
   snprintf(file, sizeof file, "%s/compare.json", scene->name);
   add(words, "compare", task->texts[2], "--overlap", task->texts[3], "--reference", reference, "--audit", "2",
@@ -88,13 +97,15 @@ Status app_verdict_task(const AppVerdictPlan *plan, int index, AppVerdictTask *t
   } else if (index == 0) {
     TRY(place(plan, task, "contract.json"));
     TRY(write_text(task->part, "%s.part", task->output));
-    add(&words, "stress", "--pairs", "--overlap", plan->source, "--json", task->part, NULL);
+    TRY(write_list(task->texts[3], NULL, plan->source));
+    add(&words, "stress", "--pairs", "--overlap", task->texts[3], "--json", task->part, NULL);
     if (plan->is_quick) add(&words, "--quick", NULL);
     return STATUS_OK; // it has no --threads
   } else if (index == 4) {
     task->is_printed = true;
     TRY(place(plan, task, "unseen.json"));
-    add(&words, "bench", "unseen", "--model", plan->source, "--json", NULL);
+    TRY(write_list(task->texts[3], NULL, plan->source));
+    add(&words, "bench", "unseen", "--model", task->texts[3], "--json", NULL);
     if (plan->is_quick) add(&words, "--seeds", "1", "--case", "jittered,edge,made", NULL);
   } else {
     TRY(fill_eval(plan, task, &words, index));

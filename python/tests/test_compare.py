@@ -52,6 +52,15 @@ class Compare(unittest.TestCase):
             self.assertAlmostEqual(got["stiff"].errors["audit_volume_error"], 0.1, delta=1e-6)
             self.assertGreater(got["stiff"].errors["force_error_l2"], 1e-4)
 
+    def test_a_file_may_have_a_comma_in_its_name(self):
+        weights = Path(os.environ["TETLAP_SOURCE_DIR"], "net", "weights", "geo-small.safetensors")
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder, "1,2.safetensors")
+            shutil.copy(weights, file)
+            got = tetlap.compare(SCENE, {"clip": "clip", "mine": str(file)}, Path(folder, "out"))
+            self.assertEqual([model.outcome for model in got.values()], ["finished"] * 2)
+            self.assertGreater(got["mine"].errors["force_error_l2"], 0)
+
     def test_weights_files_of_one_base_name_are_on_its_page_too(self):
         weights = Path(os.environ["TETLAP_SOURCE_DIR"], "net", "weights", "geo-small.safetensors")
         with tempfile.TemporaryDirectory() as folder:

@@ -109,7 +109,7 @@ def compare(scene: Scene, models: Mapping[str, OverlapModel], directory: str | o
         raise ValueError(f"reference {reference!r} is none of the models: {', '.join(models)}")
     scene, directory, keeper = _place_scene(scene, directory)
     words, servers = _serve(models)
-    command = [_locate.program(), "compare", str(scene), "--overlap", ",".join(words), "-o", str(directory), "--json"]
+    command = [_locate.program(), "compare", str(scene), "--overlap", ",".join(word.replace(",", "\\,") for word in words), "-o", str(directory), "--json"]
     for text in override_texts(set):
         command += ["--set", text]
     for name, value in (("audit", audit), ("threads", threads), ("reference", reference and words[list(models).index(reference)])):

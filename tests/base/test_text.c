@@ -72,6 +72,18 @@ START_TEST(a_list_is_cut_at_commas_and_blanks_around_words_are_left_out) {
 }
 END_TEST
 
+START_TEST(a_word_of_a_list_may_have_commas_of_its_own) {
+  const char *words[3];
+  char list[64];
+  size_t used = 0;
+  ck_assert_int_eq(split("exec:mine a\\,b\\n , clip", words), 2);
+  ck_assert_str_eq(words[0], "exec:mine a,b\\n");
+  ck_assert_str_eq(words[1], "clip");
+  for (int w = 0; w < 2; w++) text_append_word(list, sizeof list, &used, words[w]);
+  ck_assert_str_eq(list, "exec:mine a\\,b\\n,clip");
+}
+END_TEST
+
 START_TEST(a_list_with_an_empty_word_or_too_many_is_none) {
   const char *words[3];
   static const char *const empty[] = {"", " ", ",", "clip,", ",clip", "clip, ,geo"};
@@ -87,6 +99,7 @@ int main(void) {
   tcase_add_test(cases, the_beginning_of_a_name_is_a_guess_if_no_name_is_near);
   tcase_add_test(cases, utf8_is_told_from_what_is_not);
   tcase_add_test(cases, a_list_is_cut_at_commas_and_blanks_around_words_are_left_out);
+  tcase_add_test(cases, a_word_of_a_list_may_have_commas_of_its_own);
   tcase_add_test(cases, a_list_with_an_empty_word_or_too_many_is_none);
   return suite_run("text", cases, 60);
 }

@@ -104,14 +104,9 @@ static Status check_digest(const Record *before, const AppVerdictPlan *plan, con
   return STATUS_OK;
 }
 
-// A model that cannot be opened, or not be named in a list, is told before anything is asked of others.
+// A model that cannot be opened is told before anything is asked of others.
 static Status try_model(const char *source) {
   OverlapModel model;
-  if (strchr(source, ','))
-    return status_fail(STATUS_USAGE,
-                       "'%s': a comma ends a name where scenes are compared; name several models as words of "
-                       "their own, or put a command with a comma into a script",
-                       source);
   TRY(overlap_model_create(&model, source));
   overlap_model_destroy(&model);
   return STATUS_OK;
