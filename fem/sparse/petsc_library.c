@@ -105,6 +105,9 @@ static Status initialize(void) {
   MPI_Comm *world = NULL;
   TRY(find("PETSC_COMM_WORLD", &world));
   functions.self = *world;
+  __typeof__(functions.release) *to_free = NULL;
+  TRY(find("PetscTrFree", &to_free));
+  functions.release = *to_free;
   functions.PetscPushErrorHandler(functions.PetscIgnoreErrorHandler, NULL);
   atexit(finalize);
   return STATUS_OK;

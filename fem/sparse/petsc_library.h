@@ -14,11 +14,17 @@
   FUNCTION(MatConvert)                                                                                       \
   FUNCTION(MatCreateSeqAIJWithArrays)                                                                        \
   FUNCTION(MatDestroy)                                                                                       \
+  FUNCTION(MatGetRowIJ)                                                                                      \
+  FUNCTION(MatRestoreRowIJ)                                                                                  \
+  FUNCTION(MatSeqAIJGetArrayRead)                                                                            \
+  FUNCTION(MatSeqAIJRestoreArrayRead)                                                                        \
   FUNCTION(MatSetBlockSize)                                                                                  \
   FUNCTION(MatSetOption)                                                                                     \
   FUNCTION(PCApply)                                                                                          \
   FUNCTION(PCCreate)                                                                                         \
   FUNCTION(PCDestroy)                                                                                        \
+  FUNCTION(PCGetCoarseOperators)                                                                             \
+  FUNCTION(PCGetInterpolations)                                                                              \
   FUNCTION(PCSetCoordinates)                                                                                 \
   FUNCTION(PCSetFromOptions)                                                                                 \
   FUNCTION(PCSetOperators)                                                                                   \
@@ -41,6 +47,8 @@ typedef struct FemPetscLibrary {
   FEM_PETSC_FUNCTIONS(FEM_PETSC_FIELD)
 #undef FEM_PETSC_FIELD
   MPI_Comm self; // of this process alone
+  // Frees what PETSc allocated for us: what its macro PetscFree calls.
+  PetscErrorCode (*release)(void *, int, const char *, const char *);
 } FemPetscLibrary;
 
 // The library, loaded and initialised once; it stays until the process ends. STATUS_IO: it is not installed,

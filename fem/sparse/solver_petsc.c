@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Condensed system by conjugate gradients with algebraic multigrid of PETSc: `amg` is hypre's BoomerAMG, with
-// unknowns of a vertex kept apart by their direction (Henson and Yang 2002), `gamg` PETSc's smoothed
-// aggregation with the rigid motions as near-null space (Vaněk, Mandel and Brezina 1996; Adams et al. 2004).
+// unknowns of a vertex kept apart by their direction (Henson and Yang 2002) and its hierarchy worked through
+// by fem/sparse/multigrid/cycle.h, `gamg` PETSc's smoothed aggregation with the rigid motions as near-null
+// space (Vaněk, Mandel and Brezina 1996; Adams et al. 2004).
 //
 // A hierarchy costs as much as some five iterations and still serves after small changes of the matrix: it is
 // kept while the number of iterations stays near that of when it was new. Conjugate gradients always use the
@@ -15,6 +16,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "fem/sparse/cg.h"
+#include "fem/sparse/hierarchy.h"
 #include "fem/sparse/petsc_library.h"
 #include "fem/sparse/solver.h"
 #include "fem/sparse/vector.h"
@@ -51,8 +53,9 @@ typedef struct PetscSolver {
   Vec right_vec, left_vec; // views of them
   Rows rows;               // kept by gamg, whose matrix they are
   Mat matrix;              // of gamg
-  PC multigrid;            // NULL: none yet
-  FemWear wear;            // of the multigrid
+  PC multigrid;            // of gamg; NULL: none yet
+  FemCycle cycle;          // of amg; without levels: none yet
+  FemWear wear;            // of either
   FemCg cg;
   const FemMatrix *current; // borrowed, of the last factorise; NULL: none
   long long layout;         // that was analysed
@@ -91,6 +94,7 @@ static void free_rows(Rows *rows) {
 static void forget_multigrid(PetscSolver *solver) {
   if (solver->multigrid) solver->petsc->PCDestroy(&solver->multigrid);
   if (solver->matrix) solver->petsc->MatDestroy(&solver->matrix);
+  fem_cycle_destroy(&solver->cycle);
   solver->multigrid = NULL, solver->matrix = NULL;
   free_rows(&solver->rows);
   solver->rows_layout = 0;
@@ -116,8 +120,7 @@ static void destroy(void *self) {
 }
 
 // BoomerAMG as measured on contact, friction, statics and ν = 0.45: one level of aggressive coarsening, which
-// halves memory for a third more iterations, and one sweep of Gauss and Seidel down and one back up, which is
-// symmetric and half the work of a symmetric one each way. gamg with its own smoother.
+// halves memory for a third more iterations. gamg with its own smoother.
 static Status set_options(const PetscSolver *solver) {
   static const char *const options[][2] = {
       {"-tetlap_amg_pc_hypre_type", "boomeramg"},
@@ -126,9 +129,6 @@ static Status set_options(const PetscSolver *solver) {
       {"-tetlap_amg_pc_hypre_boomeramg_P_max", "4"},
       {"-tetlap_amg_pc_hypre_boomeramg_strong_threshold", "0.5"},
       {"-tetlap_amg_pc_hypre_boomeramg_agg_nl", "1"},
-      {"-tetlap_amg_pc_hypre_boomeramg_no_CF", NULL},
-      {"-tetlap_amg_pc_hypre_boomeramg_relax_type_down", "SOR/Jacobi"},
-      {"-tetlap_amg_pc_hypre_boomeramg_relax_type_up", "backward-SOR/Jacobi"},
       {"-tetlap_gamg_pc_gamg_reuse_interpolation", "true"},
   };
   for (size_t i = 0; i < sizeof options / sizeof *options; i++)
@@ -312,31 +312,43 @@ static Status set_up(PetscSolver *solver, Mat matrix) {
   return STATUS_OK;
 }
 
-// hypre has a matrix of its own: ours goes before the hierarchy is made.
-static Status convert(PetscSolver *solver, const FemMatrix *matrix, Mat *converted) {
+// hypre has a matrix of its own.
+static Status convert(PetscSolver *solver, const Rows *rows, Mat *converted) {
   const FemPetscLibrary *petsc = solver->petsc;
-  Rows rows = {0};
   Mat own = NULL;
-  Status status = make_rows(solver, matrix, &rows);
-  if (!status) status = wrap_rows(solver, &rows, &own);
+  Status status = wrap_rows(solver, rows, &own);
   if (!status) {
     PetscErrorCode code = petsc->MatConvert(own, MATHYPRE, MAT_INITIAL_MATRIX, converted);
     if (code) status = fail_in(solver, "the matrix", code);
   }
   if (own) petsc->MatDestroy(&own);
-  free_rows(&rows);
   return status;
 }
 
-static Status build_boomer(PetscSolver *solver, const FemMatrix *matrix) {
+static Status coarsen(PetscSolver *solver, const Rows *rows) {
   Mat converted = NULL;
-  forget_multigrid(solver);
-  TRY(convert(solver, matrix, &converted));
+  TRY(convert(solver, rows, &converted));
   Status status = STATUS_OK;
   PetscErrorCode code = solver->petsc->MatSetBlockSize(converted, 3);
   if (code) status = fail_in(solver, "the matrix", code);
   if (!status) status = set_up(solver, converted);
   solver->petsc->MatDestroy(&converted); // the multigrid has it
+  return status;
+}
+
+// The hierarchy is hypre's, the work with it our own, so hypre's copies go.
+static Status build_boomer(PetscSolver *solver, const FemMatrix *matrix) {
+  Rows rows = {0};
+  PetscErrorCode code = 0;
+  forget_multigrid(solver);
+  Status status = make_rows(solver, matrix, &rows);
+  if (!status) status = coarsen(solver, &rows);
+  FemRows finest = {rows.count, rows.count, rows.begin, rows.column, rows.value};
+  if (!status) status = fem_hierarchy_take(solver->petsc, solver->multigrid, &finest, &solver->cycle, &code);
+  if (code) status = fail_in(solver, "the multigrid", code);
+  if (solver->multigrid) solver->petsc->PCDestroy(&solver->multigrid);
+  solver->multigrid = NULL;
+  free_rows(&rows);
   return status;
 }
 
@@ -371,7 +383,7 @@ static Status renew(PetscSolver *solver, const FemMatrix *matrix) {
     return status_fail(STATUS_RETRY, "the condensed matrix is not finite");
   if (!has_positive_diagonal(matrix))
     return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");
-  if (solver->multigrid && !solver->wear.is_worn) return STATUS_OK;
+  if ((solver->multigrid || solver->cycle.levels) && !solver->wear.is_worn) return STATUS_OK;
   return build(solver, matrix);
 }
 
@@ -404,17 +416,24 @@ static void aim(void *self, double tolerance) {
   solver->aimed = fem_wear_aim(solver->tolerance, tolerance);
 }
 
+static Status apply_gamg(PetscSolver *solver) {
+  double *right; // PETSc is told that its numbers are others
+  PETSC_TRY("a vector", solver->petsc->VecGetArray(solver->right_vec, &right));
+  PETSC_TRY("a vector", solver->petsc->VecRestoreArray(solver->right_vec, &right));
+  PETSC_TRY("the multigrid", solver->petsc->PCApply(solver->multigrid, solver->right_vec, solver->left_vec));
+  return STATUS_OK;
+}
+
 static Status precondition(void *self, const double *r, double *z) {
   PetscSolver *solver = self;
-  const FemPetscLibrary *petsc = solver->petsc;
-  double *right, *left;
-  PETSC_TRY("a vector", petsc->VecGetArray(solver->right_vec, &right));
-  for (int u = 0; u < solver->size; u++) right[solver->place[u]] = r[u];
-  PETSC_TRY("a vector", petsc->VecRestoreArray(solver->right_vec, &right));
-  PETSC_TRY("the multigrid", petsc->PCApply(solver->multigrid, solver->right_vec, solver->left_vec));
-  PETSC_TRY("a vector", petsc->VecGetArray(solver->left_vec, &left));
-  for (int u = 0; u < solver->size; u++) z[u] = left[solver->place[u]];
-  PETSC_TRY("a vector", petsc->VecRestoreArray(solver->left_vec, &left));
+#pragma omp parallel for schedule(static) if (solver->size > FEM_VECTOR_LONG)
+  for (int u = 0; u < solver->size; u++) solver->right[solver->place[u]] = r[u];
+  if (solver->kind == BOOMER)
+    fem_cycle_apply(&solver->cycle, solver->right, solver->left);
+  else
+    TRY(apply_gamg(solver));
+#pragma omp parallel for schedule(static) if (solver->size > FEM_VECTOR_LONG)
+  for (int u = 0; u < solver->size; u++) z[u] = solver->left[solver->place[u]];
   return STATUS_OK;
 }
 
