@@ -15,6 +15,7 @@
 #include "contact/shape/shape.h"
 #include "contact/volume/volume.h"
 #include "overlap/separation.h"
+#include "overlap/slopes.h"
 
 // Pairs that are looked at together. Two portions take less time than to tell other ranks of them.
 enum { PORTION_SIZE = 64, FEW_TO_SHARE = 2 * PORTION_SIZE };
@@ -43,6 +44,7 @@ void contact_evaluation_destroy(ContactEvaluation *evaluation) {
   memory_free(evaluation->pairs);
   memory_free(evaluation->coordinates);
   memory_free(evaluation->volumes);
+  memory_free(evaluation->slopes);
   memory_free(evaluation->gradients);
   memory_free(evaluation->pair_forces);
   memory_free(evaluation->nodes);
@@ -95,6 +97,7 @@ static void clear(ContactEvaluation *evaluation) {
   const ContactPatches *patches = &evaluation->patches;
   const ContactRest *rest = evaluation->rest;
   const double *forces = rest ? rest->forces : NULL, *covered = rest ? rest->covered : NULL;
+  evaluation->has_slopes = false;
   for (int n = 0; n < patches->node_count; n++)
     for (size_t c = 0; c < 3; c++) {
       size_t place = 3 * (size_t)patches->nodes[n].vertex + c;
@@ -483,6 +486,34 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
   evaluation->overlap_s = overlapped - start;
   evaluation->force_s = clock_wall_s() - overlapped;
   return STATUS_OK;
+}
+
+// Row by row behind each other, what the model gives apart.
+static void join_slopes(const double *gradients, const double *rows, size_t count, double *slopes) {
+  for (size_t k = 0; k < count; k++) {
+    memcpy(slopes + 96 * k, gradients + 24 * k, 24 * sizeof *slopes);
+    memcpy(slopes + 96 * k + 24, rows + 72 * k, 72 * sizeof *slopes);
+  }
+}
+
+Status contact_evaluation_find_slopes(ContactEvaluation *evaluation, const ContactLayout *layout,
+                                      const OverlapModel *model) {
+  size_t count = (size_t)evaluation->mesh_pair_count;
+  if (evaluation->has_slopes) return STATUS_OK;
+  double *told = memory_zeroed(97 * count + 1, sizeof *told);
+  bool fits = told && memory_reserve((void **)&evaluation->slopes, &evaluation->slope_capacity,
+                                     96 * count + 1, sizeof *told);
+  double *volumes = told, *gradients = told + count, *rows = told + 25 * count;
+  OverlapBatch batch = {
+      .pair_count = (int)count, .pairs = evaluation->coordinates, .volume = volumes, .gradient = gradients};
+  Status status = fits ? STATUS_OK : status_no_memory("derivatives of overlaps");
+  if (!status && overlap_model_wants_origins(model))
+    status = find_origins(evaluation, layout, &batch.origins);
+  if (!status) status = overlap_slopes_eval(model, &batch, rows);
+  if (!status) join_slopes(gradients, rows, count, evaluation->slopes);
+  evaluation->has_slopes = !status;
+  memory_free(told);
+  return status;
 }
 
 Status contact_evaluation_list(ContactEvaluation *evaluation, const ContactLayout *layout,

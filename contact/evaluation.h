@@ -43,6 +43,9 @@ typedef struct ContactEvaluation {
   ContactInterface *interfaces; //                                       (interface_count)
   ContactPairCounts counts;     // of the pairs given to the model
   double overlap_s, force_s;    // wall time [s]
+  // ∂V/∂x [m²] and ∂x̄/∂x by the coordinates, where they were asked for           (mesh_pair_count, 4, 24)
+  double *slopes;
+  bool has_slopes;
   // Scratch memory.
   double *gradients;      // ∇V_ij where it is asked for [m²]          (pair_count, 2, 4, 3)
   double *centroids;      // x̄ of mesh pairs where it is asked for [m] (mesh_pair_count, 3)
@@ -54,7 +57,7 @@ typedef struct ContactEvaluation {
   double *rest_volumes;       // likewise: the cells' volumes at rest [m³]           (mesh_pair_count, 2)
   size_t element_capacity, body_capacity, rest_capacity;
   size_t kept_capacity, pair_capacity, coordinate_capacity, volume_capacity, gradient_capacity;
-  size_t force_capacity, flag_capacity, centroid_capacity, field_capacity, node_capacity;
+  size_t slope_capacity, force_capacity, flag_capacity, centroid_capacity, field_capacity, node_capacity;
 } ContactEvaluation;
 
 Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLayout *layout);
@@ -68,6 +71,10 @@ void contact_evaluation_start_over(ContactEvaluation *evaluation, const ContactL
 Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout *layout,
                               const ContactCandidateList *candidates, const OverlapModel *model,
                               bool with_shapes, double time, const double *positions);
+
+// The slopes of the last result, which the model that gave it has (overlap/slopes.h); found once.
+Status contact_evaluation_find_slopes(ContactEvaluation *evaluation, const ContactLayout *layout,
+                                      const OverlapModel *model);
 
 // Forgets the last result and lists instead, without asking a model, the pairs of meshes whose boxes meet:
 // pairs, coordinates and mesh_pair_count. A model that gives disjoint pairs a volume is asked these.

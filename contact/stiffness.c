@@ -153,7 +153,8 @@ static void hand_on(ContactStiffness *stiffness, const ContactStiffnessSink *sin
 
 // ---- All of it.
 
-static void bend(const ContactLayout *layout, const ContactEvaluation *evaluation, int k, double *matrix) {
+static void bend(const ContactLayout *layout, const ContactEvaluation *evaluation, int k,
+                 const double *slopes, double *matrix) {
   bool is_full = layout->def.use_full_hessian;
   const ContactPair *pair = &evaluation->pairs[k];
   double coordinates[OVERLAP_PAIR_SIZE];
@@ -167,12 +168,16 @@ static void bend(const ContactLayout *layout, const ContactEvaluation *evaluatio
     contact_field_bend_shape(layout, pair, evaluation->time, coordinates, is_full, matrix);
     return;
   }
+  if (slopes) {
+    contact_field_turn(layout, pair, coordinates, &evaluation->fields[k], slopes + 96 * (size_t)k, matrix);
+    return;
+  }
   contact_layout_unsettle_pair(layout, pair, coordinates);
   contact_field_bend(layout, pair, coordinates, is_full, matrix);
 }
 
 Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *layout,
-                             const ContactEvaluation *evaluation, int interface,
+                             const ContactEvaluation *evaluation, int interface, const double *slopes,
                              const ContactStiffnessSink *sink) {
   int count;
   TRY(order_pairs(stiffness, layout, interface, evaluation->pair_count, evaluation->pairs, &count));
@@ -181,7 +186,7 @@ Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *l
     int end = first + PORTION_SIZE < count ? first + PORTION_SIZE : count;
 #pragma omp parallel for schedule(static) if (end - first > 64)
     for (int k = first; k < end; k++)
-      bend(layout, evaluation, order[k].pair, stiffness->matrices + 576 * (size_t)(k - first));
+      bend(layout, evaluation, order[k].pair, slopes, stiffness->matrices + 576 * (size_t)(k - first));
     for (int k = first; k < end; k++) {
       if (k > 0 && !are_alike(&order[k], &order[k - 1])) hand_on(stiffness, sink);
       add_pair(stiffness, layout, &evaluation->pairs[order[k].pair],

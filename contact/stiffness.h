@@ -13,7 +13,7 @@ typedef struct ContactStiffnessSink {
   void *self;
   // S += scale · w wᵀ, w (count, 3).
   void (*add_outer)(void *self, int count, const int *vertices, const double *w, double scale);
-  // S += matrix, (3 count, 3 count), symmetric.
+  // S += matrix, (3 count, 3 count), symmetric unless told otherwise.
   void (*add_dense)(void *self, int count, const int *vertices, const double *matrix);
 } ContactStiffnessSink;
 
@@ -47,9 +47,11 @@ size_t contact_stiffness_bytes(const ContactStiffness *stiffness); // on the hea
 enum { CONTACT_ALL_INTERFACES = -1 };
 
 // Hands ∂²U/∂x² of an evaluation to the sink, that of one interface or of all, as contact_field_bend or
-// contact_volume_bend gives it, by vertices of the contact mesh. STATUS_MEMORY possible.
+// contact_volume_bend gives it, by vertices of the contact mesh. With the model's `slopes` (mesh_pair_count,
+// 4, 24; else NULL) of pairs of meshes −∂f/∂x by contact_field_turn instead, which is not symmetric.
+// STATUS_MEMORY possible.
 Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *layout,
-                             const ContactEvaluation *evaluation, int interface,
+                             const ContactEvaluation *evaluation, int interface, const double *slopes,
                              const ContactStiffnessSink *sink);
 
 // Visits cliques that contain every list the sink would be given if all candidates whose boxes are within

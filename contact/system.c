@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/system.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -9,6 +10,7 @@
 #include "contact/audit.h"
 #include "contact/footprint.h"
 #include "contact/pressure/area.h"
+#include "contact/pressure/field_pull.h"
 #include "contact/pressure/star_sink.h"
 #include "contact/rest.h"
 #include "contact/search/gap.h"
@@ -17,6 +19,7 @@
 #include "contact/status.h"
 #include "contact/stiffness.h"
 #include "contact/surface/stars.h"
+#include "overlap/slopes.h"
 
 struct ContactSystem {
   ContactStars stars; // what all below works on
@@ -417,8 +420,59 @@ double contact_system_energy_of(const ContactEvaluation *evaluation, int interfa
 
 Status contact_system_stiffness_of(ContactSystem *system, const ContactEvaluation *evaluation, int interface,
                                    const ContactStiffnessSink *sink) {
-  return contact_stiffness_add(&system->stiffness, &system->layout, evaluation, interface,
+  return contact_stiffness_add(&system->stiffness, &system->layout, evaluation, interface, NULL,
                                contact_system_sink(system, sink));
+}
+
+Status contact_system_turn(ContactSystem *system, const ContactEvaluation *evaluation, int interface,
+                           const ContactStiffnessSink *sink) {
+  const double *slopes;
+  TRY(contact_system_slopes(system, evaluation, &slopes));
+  return contact_stiffness_add(&system->stiffness, &system->layout, evaluation, interface, slopes,
+                               contact_system_sink(system, sink));
+}
+
+Status contact_system_slopes(ContactSystem *system, const ContactEvaluation *evaluation,
+                             const double **slopes) {
+  const OverlapModel *model = system->layout.def.model;
+  *slopes = NULL;
+  if (!overlap_slopes_are_there(model)) return STATUS_OK;
+  assert(evaluation == &system->evaluation);
+  TRY(contact_evaluation_find_slopes(&system->evaluation, &system->layout, model));
+  *slopes = evaluation->slopes;
+  return STATUS_OK;
+}
+
+// By the pair's F and λ(x̄), whose forces on the vertices are λ F and its opposite.
+static ContactFieldSlopes slopes_of_forces(const ContactLayout *layout, const ContactPair *pair,
+                                           const ContactFieldPair *field, const double *forces,
+                                           double weight) {
+  ContactFieldSlopes by = {{0, 0, 0}, 0, {{0}}};
+  for (int t = 0; t < 2; t++)
+    for (int v = 0; v < 4; v++) {
+      int vertex = contact_layout_vertices(layout, pair->cells[t])[v];
+      Vec3 own = vec3_scale(t == 0 ? weight : -weight, vec3_at(forces + 3 * (size_t)vertex));
+      by.weights[t][v] = vec3_dot(own, vec3_at(field->force));
+      vec3_accumulate(by.force, vec3_scale(field->weights[t][v], own));
+    }
+  return by;
+}
+
+Status contact_system_pull(ContactSystem *system, const ContactEvaluation *evaluation, int interface,
+                           const double *forces, double weight, double *answers) {
+  const double *slopes, *spread = contact_system_spread(system, forces);
+  TRY(contact_system_slopes(system, evaluation, &slopes));
+  assert(slopes);
+  for (int k = 0; k < evaluation->mesh_pair_count; k++) {
+    const ContactPair *pair = &evaluation->pairs[k];
+    const ContactFieldPair *field = &evaluation->fields[k];
+    double slope[24] = {0};
+    if (interface != CONTACT_ALL_INTERFACES && pair->interface != interface) continue;
+    const ContactFieldSlopes by = slopes_of_forces(&system->layout, pair, field, spread, weight);
+    contact_field_pull(&system->layout, pair, evaluation->coordinates + 24 * (size_t)k, field,
+                       slopes + 96 * (size_t)k, &by, slope, answers + 4 * (size_t)k);
+  }
+  return STATUS_OK;
 }
 
 // Hands on cliques by the vertices as they were given.

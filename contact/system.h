@@ -104,6 +104,20 @@ Status contact_system_stiffness(ContactSystem *system, const ContactEvaluation *
 // The areas of contact (contact/pressure/area.h), those at rest included [m²].             (interface_count)
 void contact_system_areas(const ContactSystem *system, const ContactEvaluation *evaluation, double *areas);
 
+// Adds −∂f/∂x of an interface, or CONTACT_ALL_INTERFACES, exactly by the overlap model's own derivatives,
+// which it has (overlap/slopes.h): the matrices are not symmetric. With the potential `field` and no law.
+Status contact_system_turn(ContactSystem *system, const ContactEvaluation *evaluation, int interface,
+                           const ContactStiffnessSink *sink);
+// ∂V/∂x and ∂x̄/∂x of the evaluation's pairs of meshes (mesh_pair_count, 4, 24), the system's; NULL of a model
+// that clips, whose polyhedra tell them.
+Status contact_system_slopes(ContactSystem *system, const ContactEvaluation *evaluation,
+                             const double **slopes);
+
+// Adds to `answers` (mesh_pair_count, 4) what λ · f of an interface, or CONTACT_ALL_INTERFACES, has by V and
+// x̄ of the pairs of meshes, λ = weight · forces (vertex_count, 3). Of a model with slopes.
+Status contact_system_pull(ContactSystem *system, const ContactEvaluation *evaluation, int interface,
+                           const double *forces, double weight, double *answers);
+
 // The same of one interface, none at rest: its forces, its energy, its part of the stiffness.
 void contact_system_add_force_of(const ContactSystem *system, const ContactEvaluation *evaluation,
                                  int interface, double *force);

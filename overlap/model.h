@@ -18,8 +18,8 @@ const OverlapOps *const *overlap_model_list(int *count);
 // known ones and the nearest.
 Status overlap_model_create(OverlapModel *model, const char *name);
 
-// The same with options for networks, and for `hybrid` the name or file of its network, which `hybrid=WORD` has
-// itself; both may be NULL.
+// The same with options for networks, and for `hybrid` the name or file of its network, which `hybrid=WORD`
+// has itself; both may be NULL.
 Status overlap_model_create_with(OverlapModel *model, const char *name, const char *weights,
                                  const OverlapOptions *options);
 
@@ -39,8 +39,8 @@ bool overlap_model_has_gradient(const OverlapModel *model);
 bool overlap_model_wants_origins(const OverlapModel *model);
 
 // Evaluates all pairs of the batch with OpenMP. STATUS_INPUT: a coordinate is NaN or infinite; the message
-// names the pair. STATUS_INPUT: a gradient, centroid or Hessian is asked of a model that has none. Where x̄ follows from ∇V and the
-// batch has no place for ∇V, that is allocated for the call.
+// names the pair. STATUS_INPUT: a gradient, centroid or Hessian is asked of a model that has none. Where x̄
+// follows from ∇V and the batch has no place for ∇V, that is allocated for the call.
 Status overlap_model_eval(const OverlapModel *model, const OverlapBatch *batch);
 
 void overlap_model_destroy(OverlapModel *model);

@@ -15,6 +15,7 @@
 #define TETLAP_OVERLAP_OPS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "base/status.h"
@@ -72,6 +73,16 @@ typedef struct OverlapAnswer {
   unsigned *flags;  // OverlapFlag
 } OverlapAnswer;
 
+// Derivatives by the parameters w of a model's network.
+typedef struct OverlapTraining {
+  size_t (*count)(const void *self); // of the parameters
+  void (*read)(const void *self, double *parameters);
+  // Adds ∂g/∂w (count), given ∂g/∂V and ∂g/∂x̄ of pairs: `by` (pair_count, 4).
+  Status (*pull)(const void *self, int pair_count, const double *pairs, const double *by, double *slope);
+  // Numbers (count) as a weights file of the same shape.
+  Status (*write)(const void *self, const double *numbers, const char *path);
+} OverlapTraining;
+
 // What a model implements. One per model, `static const`, listed in model.c.
 typedef struct OverlapOps {
   const char *name;
@@ -112,6 +123,11 @@ typedef struct OverlapOps {
   const char *weights;
   // What OverlapPull asks for; NULL: it cannot. Pairs that it answers unasked have the slope 0.
   Status (*eval_pull)(const void *self, const OverlapPull *pull);
+  // ∂x̄/∂x of pairs (count, 24), (count, 3, 24), of a model with a centroid of its own; 0 where V is 0. Called
+  // from several threads at once. NULL: eval_pull is asked, or there are none.
+  Status (*eval_slopes)(const void *self, int count, const double *pairs, double *slopes);
+  // NULL: its parameters have no derivatives.
+  const OverlapTraining *training;
   // Whether it wants to know the origins of pairs; NULL: no.
   bool (*wants_origins)(const void *self);
 } OverlapOps;

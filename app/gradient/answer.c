@@ -13,6 +13,7 @@ static Status prepare(AppGradientAnswer *answer, const FemModel *model, const Ap
                                  .parameters = answer->parameters,
                                  .goal_count = words->of_count,
                                  .parameter_count = words->by_count,
+                                 .by_weights = words->by_weights,
                                  .follows_choice = words->is_total};
   for (int g = 0; g < words->of_count; g++)
     TRY(status_prefix(app_gradient_read_goal(model, words->of[g], at, &answer->goals[g]), "--of"));

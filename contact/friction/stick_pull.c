@@ -24,6 +24,7 @@ typedef struct Work {
   double last_time;
   const ContactStickPull *pull;
   const double *forces; // ∂g/∂f by the vertices of the contact mesh; NULL: 0
+  const double *slopes; // of V and x̄, of a model that has its own; NULL: clipping has them
   PairSlopes *pairs;    //                                                  (pair_count)
   double *shares;       // ∂g/∂ of a touch's share, by its place in stick->order
 } Work;
@@ -358,7 +359,9 @@ static void pull_pair(const Work *work, int k) {
     contact_field_pull_shape(work->layout, cells, evaluation->time, coordinates, &evaluation->fields[k],
                              evaluation->pair_forces + 24 * (size_t)k, by, slope);
   else
-    contact_field_pull(work->layout, cells, coordinates, &evaluation->fields[k], by, slope);
+    contact_field_pull(work->layout, cells, coordinates, &evaluation->fields[k],
+                       work->slopes ? work->slopes + 96 * (size_t)k : NULL, by, slope,
+                       work->pull->answers ? work->pull->answers + 4 * (size_t)k : NULL);
   for (int z = 0; z < 8 && is_carried(work, k, z / 4); z++)
     add_place(work, cells->interface, z / 4, true, tet_of(work, k, z / 4)[z % 4], vec3_at(slope + 3 * z));
 }
@@ -389,9 +392,10 @@ Status contact_stick_pull(const ContactStick *stick, ContactSystem *system,
                .forces = pull->forces ? contact_system_spread(system, pull->forces) : NULL,
                .pairs = memory_zeroed(pairs + 1, sizeof(PairSlopes)),
                .shares = memory_zeroed(8 * pairs + 1, sizeof(double))};
-  bool fits = work.pairs && work.shares;
-  if (fits) pull_all(&work);
+  Status status = work.pairs && work.shares ? STATUS_OK : status_no_memory("derivatives of friction");
+  if (!status) status = contact_system_slopes(system, evaluation, &work.slopes);
+  if (!status) pull_all(&work);
   memory_free(work.pairs);
   memory_free(work.shares);
-  return fits ? STATUS_OK : status_no_memory("derivatives of friction");
+  return status;
 }

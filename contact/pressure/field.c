@@ -204,6 +204,79 @@ void contact_field_bend(const ContactLayout *layout, const ContactPair *pair, co
     bend_linear(&clipped, sides, wanted, is_full, interface->stiffness, matrix);
 }
 
+// ---- First derivatives of forces.
+
+// Of F, row by row, by the cells' vertices.
+static void change_force(const ContactSide sides[2], const ContactFieldPair *field, double stiffness,
+                         const double slopes[24], double rows[3][24]) {
+  const double *force = field->force;
+  for (int r = 0; r < 3; r++)
+    for (int k = 0; k < 24; k++) rows[r][k] = force[r] / field->volume * slopes[k];
+  for (int t = 0; t < 2; t++) { // F = −c V (s₀ g₁ − s₁ g₀), δs = −s ∇·u, δg = −(∇u)ᵀ g
+    double sign = t == 0 ? -stiffness : stiffness, own = sign * sides[t].s * field->volume,
+           other = -sign * sides[1 - t].s * field->volume;
+    const double g[3] = {sides[1 - t].g.x, sides[1 - t].g.y, sides[1 - t].g.z};
+    const double turned[3] = {sides[t].g.x, sides[t].g.y, sides[t].g.z};
+    for (int v = 0; v < 4; v++) {
+      const double slope[3] = {sides[t].slope[v].x, sides[t].slope[v].y, sides[t].slope[v].z};
+      for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+          rows[r][12 * t + 3 * v + c] -= own * g[r] * slope[c] + other * slope[r] * turned[c];
+    }
+  }
+}
+
+// λ_v = ∇λ_v · (x̄ − x), where the cell's own vertices move with x.
+static void change_weights(const ContactSide *side, const double lambda[4], int t, const double slopes[72],
+                           double rows[4][24]) {
+  for (int v = 0; v < 4; v++) {
+    const double slope[3] = {side->slope[v].x, side->slope[v].y, side->slope[v].z};
+    for (int k = 0; k < 24; k++)
+      rows[v][k] = slope[0] * slopes[k] + slope[1] * slopes[24 + k] + slope[2] * slopes[48 + k];
+    for (int w = 0; w < 4; w++)
+      for (int c = 0; c < 3; c++) rows[v][12 * t + 3 * w + c] -= lambda[w] * slope[c];
+  }
+}
+
+// From the cells' vertices to the tetrahedra's.
+static void fold_rows(const ContactLayout *layout, const ContactPair *pair, int t, double rows[4][24]) {
+  for (int k = 0; k < 24; k++) {
+    double column[4] = {rows[0][k], rows[1][k], rows[2][k], rows[3][k]};
+    contact_mesh_fold(&layout->mesh, &layout->def, pair->cells[t], column);
+    for (int v = 0; v < 4; v++) rows[v][k] = column[v];
+  }
+}
+
+static void fold_columns(const ContactLayout *layout, const ContactPair *pair, double row[24]) {
+  for (int i = 0; i < 6; i++) {
+    double own[4], *first = row + 12 * (i / 3) + i % 3;
+    for (int v = 0; v < 4; v++) own[v] = first[3 * v];
+    contact_mesh_fold(&layout->mesh, &layout->def, pair->cells[i / 3], own);
+    for (int v = 0; v < 4; v++) first[3 * v] = own[v];
+  }
+}
+
+void contact_field_turn(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
+                        const ContactFieldPair *field, const double slopes[96], double matrix[576]) {
+  ContactSide sides[2];
+  double force[3][24], weights[4][24], lambda[4];
+  for (int t = 0; t < 2; t++) sides[t] = contact_side_of(layout, pair->cells[t], coordinates + 12 * t);
+  change_force(sides, field, layout->interfaces[pair->interface].stiffness, slopes, force);
+  for (int t = 0; t < 2; t++) {
+    double sign = t == 0 ? -1 : 1;
+    contact_side_locate(&sides[t], vec3_at(field->centroid), lambda);
+    change_weights(&sides[t], lambda, t, slopes + 24, weights);
+    fold_rows(layout, pair, t, weights);
+    for (int v = 0; v < 4; v++)
+      for (int r = 0; r < 3; r++) {
+        double *row = matrix + 24 * (12 * t + 3 * v + r);
+        for (int k = 0; k < 24; k++)
+          row[k] = sign * (field->weights[t][v] * force[r][k] + field->force[r] * weights[v][k]);
+        fold_columns(layout, pair, row);
+      }
+  }
+}
+
 // ---- Shapes.
 
 // Where the resultant acts, by the forces on the vertices.

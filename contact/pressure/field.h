@@ -51,7 +51,13 @@ void contact_field_press_shape(const ContactLayout *layout, const ContactPair *p
 void contact_field_bend(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
                         bool is_full, double matrix[576]);
 
-// The same of a shape and a tetrahedron, (12, 12).
+// −∂f/∂x of the pair's forces by the vertices of the two tetrahedra, (24, 24), row by row of f, exactly, of a
+// model whose ∂V/∂x and ∂x̄/∂x by the cells' coordinates are `slopes` (4, 24); no law. Unlike ∂²U/∂x² it is
+// not symmetric, and it has what the pair's faces within the bodies sweep.
+void contact_field_turn(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
+                        const ContactFieldPair *field, const double slopes[96], double matrix[576]);
+
+// ∂²U/∂x² of a shape and a tetrahedron, (12, 12).
 void contact_field_bend_shape(const ContactLayout *layout, const ContactPair *pair, double time,
                               const double tet[12], bool is_full, double matrix[144]);
 

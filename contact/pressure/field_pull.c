@@ -134,23 +134,50 @@ static void fold_slopes(const ContactLayout *layout, const ContactPair *pair, co
     }
 }
 
-void contact_field_pull(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
-                        const ContactFieldPair *field, const ContactFieldSlopes *by, double slope[24]) {
+// m_z = V λ_z(x̄) by the polyhedron.
+static void pull_clipped(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
+                         const ContactSide sides[2], const double lambda[8], double volume,
+                         const Means *means, double own[24]) {
   ContactClipped clipped;
-  ContactSide sides[2];
-  Means means;
-  double settled[24], own[24] = {0}, lambda[8];
+  double settled[24];
   memcpy(settled, coordinates, sizeof settled);
   contact_layout_unsettle_pair(layout, pair, settled);
   if (!contact_clipped_make(&clipped, layout, pair, settled)) return;
+  pull_volume(sides, lambda, volume, means, own);
+  pull_faces(&clipped, means, own);
+}
+
+// The same by the model's V and x̄: λ_z = ∇λ_z · (x̄ − x), where the cell's own vertices move with x.
+static void pull_model(const ContactSide sides[2], const double lambda[8], double volume, const Means *means,
+                       const double slopes[96], double own[24], double *answer) {
+  double by[4] = {0, 0, 0, 0}; // V, x̄
+  for (int z = 0; z < 8; z++) {
+    Vec3 turn = vec3_scale(volume * means->moments[z], sides[z / 4].slope[z % 4]);
+    by[0] += means->moments[z] * lambda[z];
+    vec3_accumulate(by + 1, turn);
+    for (int v = 4 * (z / 4); v < 4 * (z / 4) + 4; v++) add_to(own, v, vec3_scale(-lambda[v], turn));
+  }
+  for (int k = 0; k < 24; k++)
+    own[k] += by[0] * slopes[k] + by[1] * slopes[24 + k] + by[2] * slopes[48 + k] + by[3] * slopes[72 + k];
+  for (int i = 0; i < 4 && answer; i++) answer[i] += by[i];
+}
+
+void contact_field_pull(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
+                        const ContactFieldPair *field, const double *slopes, const ContactFieldSlopes *by,
+                        double slope[24], double answer[4]) {
+  ContactSide sides[2];
+  Means means;
+  double own[24] = {0}, lambda[8];
   for (int t = 0; t < 2; t++) {
     sides[t] = contact_side_of(layout, pair->cells[t], coordinates + 12 * t);
     contact_side_locate(&sides[t], vec3_at(field->centroid), lambda + 4 * t);
   }
   find_means(layout, pair, sides, field, by, &means);
   pull_sides(sides, &means, own);
-  pull_volume(sides, lambda, field->volume, &means, own);
-  pull_faces(&clipped, &means, own);
+  if (slopes)
+    pull_model(sides, lambda, field->volume, &means, slopes, own, answer);
+  else
+    pull_clipped(layout, pair, coordinates, sides, lambda, field->volume, &means, own);
   fold_slopes(layout, pair, own, slope);
 }
 

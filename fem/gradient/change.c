@@ -332,7 +332,7 @@ Status fem_change_add_contact(FemChange *change, const FemTangent *tangent, int 
   if (!moves) return STATUS_OK;
   turn_forces(change, tangent, interface, force);
   fem_change_field(change, tangent, interface, change->product);
-  return fem_tangent_add_contact_product(tangent, interface, change->product, force);
+  return fem_tangent_add_contact_product(tangent, interface, false, change->product, force);
 }
 
 static Status find(FemChange *change, FemVaried *varied, const FemTangent *tangent,

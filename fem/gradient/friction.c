@@ -66,6 +66,7 @@ static ContactStickPull pull_of(const FemFriction *friction) {
                             .before = friction->before,
                             .stiffness = friction->stiffness,
                             .friction = friction->slip,
+                            .answers = friction->answers,
                             .moves = friction->moves};
 }
 

@@ -18,6 +18,7 @@ typedef struct FemFriction {
   size_t before_capacity;   // of that
   double *stiffness, *slip; // by ln κ and μ of each interface               (interface_count)
   double (*moves)[2][3];    // Σ over side 0's vertices of `now`, of `then`  (interface_count)
+  double *answers;          // by overlaps, borrowed; NULL: not wanted      (pairs of meshes, 4)
   double *scaled;           // scratch                                       (value_count)
 } FemFriction;
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "fem/sparse/krylov.h"
 #include "fem/sparse/vector.h"
 #include "fem/statics/equilibrium.h"
 
@@ -24,6 +25,8 @@ typedef struct Adjoint {
   FemTangent tangent;
   FemVaried varied;
   FemChange change;
+  FemAnswers answers;                        // of derivatives by weights
+  FemKrylov krylov;                          // of overlap models that do not clip
   int count;                                 // n
   double *u, *force, *step, *right, *lambda; // (n)
   double *multipliers; // λ on all vertices, 0 where prescribed    (goal_count, vertex_count, 3)
@@ -36,6 +39,8 @@ static size_t values_of(const Adjoint *adjoint) {
 }
 
 static void destroy(Adjoint *adjoint) {
+  fem_answers_destroy(&adjoint->answers);
+  fem_krylov_destroy(&adjoint->krylov);
   fem_change_destroy(&adjoint->change);
   fem_varied_destroy(&adjoint->varied);
   fem_tangent_destroy(&adjoint->tangent);
@@ -99,7 +104,7 @@ Status fem_gradient_judge(double residual, double time) {
 }
 
 // λ by K's factor, with iterative refinement.
-static Status solve(Adjoint *adjoint, double *residual) {
+static Status refine(Adjoint *adjoint, double *residual) {
   FemEquilibrium *equilibrium = &adjoint->equilibrium;
   int n = adjoint->count;
   double whole = sqrt(fem_vector_dot(n, adjoint->right, adjoint->right));
@@ -115,10 +120,53 @@ static Status solve(Adjoint *adjoint, double *residual) {
     *residual = sqrt(fem_vector_dot(n, adjoint->force, adjoint->force)) / whole;
     if (*residual <= RESIDUAL) break;
   }
+  return STATUS_OK;
+}
+
+// y = Jᵀ x over the unknowns.
+static Status multiply(void *self, const double *x, double *y) {
+  Adjoint *adjoint = self;
+  const int *dofs = adjoint->equilibrium.system->numbering.dof_of_unknown;
+  double *from = adjoint->change.product, *to = adjoint->change.contact;
+  memset(from, 0, values_of(adjoint) * sizeof *from);
+  for (int i = 0; i < adjoint->count; i++) from[dofs[i]] = x[i];
+  TRY(fem_tangent_pull(&adjoint->tangent, from, to));
+  for (int i = 0; i < adjoint->count; i++) y[i] = to[dofs[i]];
+  return STATUS_OK;
+}
+
+static Status precondition(void *self, const double *x, double *y) {
+  return fem_equilibrium_solve(&((Adjoint *)self)->equilibrium, x, y);
+}
+
+static Status create_krylov(Adjoint *adjoint) {
+  if (!fem_learned_is_there(adjoint->equilibrium.system->model)) return STATUS_OK;
+  adjoint->krylov = (FemKrylov){.self = adjoint, .multiply = multiply, .precondition = precondition};
+  return fem_krylov_create(&adjoint->krylov, adjoint->count);
+}
+
+static Status solve(Adjoint *adjoint, double *residual) {
+  if (adjoint->krylov.self)
+    TRY(fem_krylov_solve(&adjoint->krylov, adjoint->right, RESIDUAL, adjoint->lambda, residual));
+  else
+    TRY(refine(adjoint, residual));
   return fem_gradient_judge(*residual, adjoint->state.time);
 }
 
-// How far K λ is from the difference of forces along λ.
+// J λ into `step`.
+static void push(Adjoint *adjoint) {
+  const FemSystem *system = adjoint->equilibrium.system;
+  const int *dofs = system->numbering.dof_of_unknown;
+  double *from = adjoint->change.product, *to = adjoint->change.contact;
+  fem_matrix_multiply(&system->matrix, adjoint->lambda, adjoint->step);
+  memset(from, 0, values_of(adjoint) * sizeof *from);
+  memset(to, 0, values_of(adjoint) * sizeof *to);
+  for (int i = 0; i < adjoint->count; i++) from[dofs[i]] = adjoint->lambda[i];
+  fem_tangent_add_learned(&adjoint->tangent, from, to);
+  for (int i = 0; i < adjoint->count; i++) adjoint->step[i] += to[dofs[i]];
+}
+
+// How far J λ is from the difference of forces along λ.
 static Status compare(Adjoint *adjoint, double *mismatch) {
   FemSystem *system = adjoint->equilibrium.system;
   int n = adjoint->count;
@@ -132,7 +180,7 @@ static Status compare(Adjoint *adjoint, double *mismatch) {
     TRY(fem_equilibrium_forces(&adjoint->equilibrium, time, adjoint->step, side > 0 ? ahead : behind));
   }
   for (int i = 0; i < n; i++) ahead[i] = (ahead[i] - behind[i]) / (2 * share);
-  fem_matrix_multiply(&system->matrix, adjoint->lambda, adjoint->step);
+  push(adjoint);
   for (int i = 0; i < n; i++) {
     sum += (adjoint->step[i] + ahead[i]) * (adjoint->step[i] + ahead[i]);
     whole += adjoint->step[i] * adjoint->step[i];
@@ -147,6 +195,8 @@ static Status solve_goal(Adjoint *adjoint, int g, double *factors, FemGradient *
   size_t values = values_of(adjoint);
   double *slope = adjoint->slopes + values * (size_t)g, *all = adjoint->multipliers + values * (size_t)g;
   double residual, mismatch;
+  if (gradient->weights) TRY(fem_tangent_begin_answers(&adjoint->tangent, &adjoint->answers));
+  adjoint->tangent.answers = gradient->weights ? &adjoint->answers : NULL;
   TRY(fem_goal_evaluate(&adjoint->def->goals[g], &adjoint->tangent, &gradient->values[g], slope, factors));
   for (int i = 0; i < adjoint->count; i++) adjoint->right[i] = slope[numbering->dof_of_unknown[i]];
   TRY(solve(adjoint, &residual));
@@ -156,7 +206,9 @@ static Status solve_goal(Adjoint *adjoint, int g, double *factors, FemGradient *
   gradient->mismatches[g] = fmax(gradient->mismatches[g], mismatch);
   TRY(fem_tangent_pull(&adjoint->tangent, all, adjoint->change.product));
   for (size_t i = 0; i < values; i++) slope[i] -= adjoint->change.product[i];
-  return STATUS_OK;
+  if (!gradient->weights) return STATUS_OK;
+  TRY(fem_tangent_pull_contact(&adjoint->tangent, CONTACT_ALL_INTERFACES, all, 1));
+  return fem_tangent_train(&adjoint->tangent, gradient->weights + gradient->weight_count * (size_t)g);
 }
 
 static bool is_due(const Adjoint *adjoint, int g) {
@@ -203,6 +255,7 @@ static Status find(FemGradient *gradient, Adjoint *adjoint) {
   TRY(fem_equilibrium_factorise(equilibrium, time, adjoint->u, 0));
   TRY(fem_tangent_create(&adjoint->tangent, system, &adjoint->state));
   TRY(fem_change_create(&adjoint->change, &adjoint->tangent));
+  TRY(create_krylov(adjoint));
   TRY(solve_goals(adjoint, gradient));
   for (int p = 0; p < adjoint->def->parameter_count; p++) TRY(differentiate(adjoint, p, gradient));
   return STATUS_OK;
@@ -222,19 +275,14 @@ bool fem_gradient_is_path(const FemModel *model) {
   return !model->scene->is_static || fem_gradient_has_friction(model) || fem_gradient_has_following(model);
 }
 
-static Status check_contact(const FemSceneDef *scene) {
-  const FemContactDef *contact = &scene->contact;
+static Status check_contact(const FemModel *model) {
+  const FemContactDef *contact = &model->scene->contact;
   if (!contact->is_on) return STATUS_OK;
-  if (strcmp(contact->overlap, "clip") != 0)
-    return status_fail(STATUS_INPUT,
-                       "contact.overlap: '%s' has no exact second derivatives in the matrix; gradients need "
-                       "clip",
-                       contact->overlap);
   if (contact->potential != CONTACT_POTENTIAL_FIELD)
     return status_fail(STATUS_INPUT, "contact.potential: gradients need field");
   if (!contact->use_full_hessian)
     return status_fail(STATUS_INPUT, "contact.hessian: gradients need the full one");
-  return STATUS_OK;
+  return fem_learned_check(model);
 }
 
 static Status check_body(const FemBodyDef *body) {
@@ -257,7 +305,7 @@ static Status check_scene(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
   if (model->free_count == 0) return status_fail(STATUS_INPUT, "nothing moves freely in the scene");
   if (model->share) return status_fail(STATUS_INPUT, "gradients are found by one process: run tetlap alone");
-  TRY(check_contact(scene));
+  TRY(check_contact(model));
   for (int b = 0; b < scene->body_count; b++) TRY(check_body(&scene->bodies[b]));
   return STATUS_OK;
 }
@@ -268,7 +316,15 @@ Status fem_gradient_check(const FemModel *model, const FemGradientDef *def) {
     for (int t = 0; t < def->goals[g].term_count; t++)
       TRY(fem_quantity_check(model, &def->goals[g].terms[t].quantity));
   for (int p = 0; p < def->parameter_count; p++) TRY(fem_parameter_check(model, &def->parameters[p]));
-  return STATUS_OK;
+  size_t count;
+  return def->by_weights ? fem_learned_count_weights(model, &count) : STATUS_OK;
+}
+
+Status fem_gradient_make_weights(FemGradient *gradient, const FemModel *model, const FemGradientDef *def) {
+  if (!def->by_weights || gradient->weights) return STATUS_OK;
+  TRY(fem_learned_count_weights(model, &gradient->weight_count));
+  gradient->weights = memory_zeroed((size_t)def->goal_count * gradient->weight_count, sizeof(double));
+  return gradient->weights ? STATUS_OK : status_no_memory("derivatives by weights");
 }
 
 Status fem_gradient_create(FemGradient *gradient, const FemGradientDef *def) {
@@ -285,6 +341,7 @@ Status fem_gradient_create(FemGradient *gradient, const FemGradientDef *def) {
 Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGradientDef *def) {
   if (!gradient->values) TRY(fem_gradient_create(gradient, def));
   TRY(fem_gradient_check(system->model, def));
+  TRY(fem_gradient_make_weights(gradient, system->model, def));
   if (!system->model->scene->is_static)
     return status_fail(STATUS_INPUT, "the scene moves: it ends in no equilibrium");
   if (fem_gradient_has_friction(system->model))
@@ -309,5 +366,6 @@ void fem_gradient_destroy(FemGradient *gradient) {
   memory_free(gradient->residuals);
   memory_free(gradient->mismatches);
   memory_free(gradient->derivatives);
+  memory_free(gradient->weights);
   *gradient = (FemGradient){0};
 }

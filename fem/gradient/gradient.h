@@ -2,10 +2,11 @@
 // Derivatives dg/dp at an equilibrium f(x, p) = 0 of a static scene without friction, for any number of
 // parameters by one solve for each g (the adjoint method):
 //
-//   K λ = ∂g/∂x,   dg/dp = ∂g/∂p + λ · ∂f/∂p + (∂g/∂x_c − K_c λ) · ∂x_c/∂p,   K = −∂f/∂x, symmetric
+//   Jᵀ λ = ∂g/∂x,   dg/dp = ∂g/∂p + λ · ∂f/∂p + (∂g/∂x_c − J_cᵀ λ) · ∂x_c/∂p,   J = −∂f/∂x
 //
-// with x the free coordinates, x_c the prescribed ones and K_c their rows. Where contact begins or ends
-// exactly at the state, g has no derivative; the values are one-sided there.
+// with x the free coordinates, x_c the prescribed ones and J_c their columns. J is the matrix, symmetric, but
+// of overlap models that do not clip: with these the adjoint is solved by GMRES with the matrix's factor.
+// Where contact begins or ends exactly at the state, g has no derivative; the values are one-sided there.
 #ifndef TETLAP_FEM_GRADIENT_GRADIENT_H
 #define TETLAP_FEM_GRADIENT_GRADIENT_H
 
@@ -17,6 +18,7 @@ typedef struct FemGradientDef {
   const FemParameter *parameters; // borrowed                            (parameter_count)
   int goal_count, parameter_count;
   bool follows_choice; // a contact stiffness that is chosen changes with E and ν; else it is kept
+  bool by_weights;     // of the overlap model's network, too
 } FemGradientDef;
 
 typedef struct FemGradient {
@@ -24,9 +26,11 @@ typedef struct FemGradient {
   double unbalanced;  // largest force on an unknown, as a share of the largest on a vertex
   long long switches; // of a path, of vertices between sticking and slipping from step to step
   double *values;     // g, owned                                            (goal_count)
-  double *residuals;  // |∂g/∂x − K λ| / |∂g/∂x|, owned                      (goal_count)
-  double *mismatches; // |K λ + ∂f/∂x λ| / |K λ|, ∂f/∂x λ by differences of forces; NaN of a path; owned
+  double *residuals;  // |∂g/∂x − Jᵀ λ| / |∂g/∂x|, owned                      (goal_count)
+  double *mismatches; // |J λ + ∂f/∂x λ| / |J λ|, ∂f/∂x λ by differences of forces; NaN of a path; owned
                       // (goal_count)
+  size_t weight_count; // of the overlap model's network; 0: not asked for
+  double *weights;     // dg/dw, owned                          (goal_count, weight_count)
   double *derivatives; // dg/dp, owned                       (goal_count, parameter_count)
 } FemGradient;
 
@@ -44,6 +48,8 @@ Status fem_gradient_check(const FemModel *model, const FemGradientDef *def);
 Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGradientDef *def);
 // Room for the results, all 0.
 Status fem_gradient_create(FemGradient *gradient, const FemGradientDef *def);
+// Room for those by weights, if they are asked for.
+Status fem_gradient_make_weights(FemGradient *gradient, const FemModel *model, const FemGradientDef *def);
 void fem_gradient_destroy(FemGradient *gradient); // also of a zeroed one
 
 // Whether an adjoint of which that share is left unsolved serves for derivatives to 1e-6. STATUS_SOLVER, with

@@ -37,6 +37,10 @@ static Status check_energy(const FemModel *model, const FemQuantity *quantity) {
     return status_fail(STATUS_INPUT, "the scene has no contact");
   if (quantity->energies == FEM_QUANTITY_GRAVITY && !model->scene->has_gravity)
     return status_fail(STATUS_INPUT, "the scene has no effects.gravity");
+  if (quantity->energies & FEM_QUANTITY_CONTACT && fem_learned_is_there(model))
+    return status_fail(STATUS_INPUT,
+                       "the energy of contact has a derivative with contact.overlap: clip alone; "
+                       "energy:elastic and energy:gravity have theirs");
   return STATUS_OK;
 }
 
@@ -199,10 +203,11 @@ static Status evaluate_interface(const FemQuantity *quantity, const FemTangent *
   *value += dot(tangent, scratch->w, scratch->force);
   if (!slope) return STATUS_OK;
   if (tangent->friction) TRY(fem_friction_pull(tangent->friction, interface, scratch->w, weight));
+  TRY(fem_tangent_pull_contact(tangent, interface, scratch->w, weight));
   if (quantity->kind == FEM_QUANTITY_MOMENT)
     add_arms(quantity, tangent, interface, scratch->force, weight, slope);
   memset(scratch->force, 0, values * sizeof(double));
-  TRY(fem_tangent_add_contact_product(tangent, interface, scratch->w, scratch->force));
+  TRY(fem_tangent_add_contact_product(tangent, interface, true, scratch->w, scratch->force));
   for (size_t i = 0; i < values; i++) slope[i] -= weight * scratch->force[i];
   return STATUS_OK;
 }
@@ -252,6 +257,7 @@ static Status resist(const FemTangent *tangent, double weight, Scratch *scratch,
   TRY(fem_tangent_pull(tangent, scratch->w, scratch->force));
   for (size_t i = 0; i < values_of(tangent); i++) slope[i] += weight * scratch->force[i];
   if (tangent->damping) TRY(fem_damping_pull(tangent->damping, scratch->w, -weight));
+  TRY(fem_tangent_pull_contact(tangent, CONTACT_ALL_INTERFACES, scratch->w, -weight));
   if (!tangent->friction) return STATUS_OK;
   return fem_friction_pull(tangent->friction, CONTACT_ALL_INTERFACES, scratch->w, -weight);
 }

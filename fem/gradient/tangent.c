@@ -19,6 +19,13 @@ static Status assemble(FemTangent *tangent, size_t count) {
   return status;
 }
 
+static Status find_learned(FemTangent *tangent) {
+  const ContactEvaluation *evaluation;
+  if (!fem_learned_is_there(tangent->system->model)) return STATUS_OK;
+  TRY(fem_effect_contact_evaluate(tangent->system, tangent->state, &evaluation));
+  return fem_learned_find(&tangent->learned, tangent->contact, evaluation);
+}
+
 Status fem_tangent_create(FemTangent *tangent, FemSystem *system, const FemState *state) {
   *tangent = (FemTangent){.system = system, .state = state};
   int count = 3 * system->model->vertex_count;
@@ -32,11 +39,13 @@ Status fem_tangent_create(FemTangent *tangent, FemSystem *system, const FemState
   if (!tangent->every_dof) return status_no_memory("the stiffness of all coordinates");
   for (int dof = 0; dof < count; dof++) tangent->every_dof[dof] = dof;
   TRY(fem_matrix_create(&tangent->stiffness, system->pattern, tangent->every_dof));
-  return assemble(tangent, (size_t)count);
+  TRY(assemble(tangent, (size_t)count));
+  return find_learned(tangent);
 }
 
 void fem_tangent_destroy(FemTangent *tangent) {
   fem_matrix_destroy(&tangent->stiffness);
+  fem_learned_destroy(&tangent->learned);
   memory_free(tangent->every_dof);
   *tangent = (FemTangent){0};
 }
@@ -45,6 +54,7 @@ void fem_tangent_destroy(FemTangent *tangent) {
 typedef struct Product {
   const double *x;
   double *y, share;
+  bool back; // y += share Sᵀ x
 } Product;
 
 static void add_dense(void *self, int count, const int *vertices, const double *matrix) {
@@ -53,7 +63,8 @@ static void add_dense(void *self, int count, const int *vertices, const double *
   for (int r = 0; r < width; r++) {
     double sum = 0;
     for (int c = 0; c < width; c++)
-      sum += matrix[r * width + c] * product->x[3 * (size_t)vertices[c / 3] + (size_t)(c % 3)];
+      sum += matrix[product->back ? c * width + r : r * width + c] *
+             product->x[3 * (size_t)vertices[c / 3] + (size_t)(c % 3)];
     product->y[3 * (size_t)vertices[r / 3] + (size_t)(r % 3)] += product->share * sum;
   }
 }
@@ -145,10 +156,15 @@ static Status turn_pressures(const FemTangent *tangent, const double *lambda, do
 Status fem_tangent_pull(const FemTangent *tangent, const double *x, double *y) {
   fem_matrix_multiply(&tangent->stiffness, x, y);
   TRY(turn_pressures(tangent, x, y));
+  fem_learned_add_product(&tangent->learned, true, x, y);
   if (!tangent->stick) return STATUS_OK;
-  Product product = {x, y, -1};
+  Product product = {x, y, -1, false};
   return fem_effect_stick_add_stiffness(tangent->stick, tangent->state,
                                         &(ContactStiffnessSink){&product, add_outer, add_dense});
+}
+
+void fem_tangent_add_learned(const FemTangent *tangent, const double *x, double *y) {
+  fem_learned_add_product(&tangent->learned, false, x, y);
 }
 
 const ContactInterfaceDef *fem_tangent_interface(const FemTangent *tangent, int interface) {
@@ -173,10 +189,31 @@ Status fem_tangent_contact_energy(const FemTangent *tangent, int interface, doub
   return STATUS_OK;
 }
 
-Status fem_tangent_add_contact_product(const FemTangent *tangent, int interface, const double *x, double *y) {
+Status fem_tangent_add_contact_product(const FemTangent *tangent, int interface, bool back, const double *x,
+                                       double *y) {
   const ContactEvaluation *evaluation;
   TRY(evaluate(tangent, &evaluation));
-  Product product = {x, y, 1};
+  Product product = {x, y, 1, back};
   const ContactStiffnessSink sink = {&product, add_outer, add_dense};
-  return contact_system_stiffness_of(tangent->contact, evaluation, interface, &sink);
+  return contact_system_turn(tangent->contact, evaluation, interface, &sink);
+}
+
+Status fem_tangent_begin_answers(const FemTangent *tangent, FemAnswers *answers) {
+  const ContactEvaluation *evaluation;
+  TRY(evaluate(tangent, &evaluation));
+  return fem_answers_begin(answers, evaluation);
+}
+
+Status fem_tangent_pull_contact(const FemTangent *tangent, int interface, const double *forces,
+                                double weight) {
+  const ContactEvaluation *evaluation;
+  if (!tangent->answers) return STATUS_OK;
+  TRY(evaluate(tangent, &evaluation));
+  return contact_system_pull(tangent->contact, evaluation, interface, forces, weight, tangent->answers->by);
+}
+
+Status fem_tangent_train(const FemTangent *tangent, double *slope) {
+  const ContactEvaluation *evaluation;
+  TRY(evaluate(tangent, &evaluation));
+  return fem_answers_train(tangent->answers, tangent->contact, evaluation, slope);
 }

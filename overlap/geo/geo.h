@@ -39,6 +39,10 @@ typedef struct OverlapGeoNetwork {
   // (output_count, chunk), on cache lines: ρ and, if more than one is wanted, c. NULL: eval is used.
   Status (*eval_columns)(const void *self, const double *features, int output_count, double *outputs,
                          double *gradient);
+  // All outputs (output_count) of one pair's features, and of `count` ≤ 3 seeds (count, output_count) the
+  // derivatives of Σ seed · output by the features (count, feature_count). NULL: not.
+  Status (*pull)(const void *self, const double *features, int count, const double *seeds, double *outputs,
+                 double *slopes);
   // Whether it has the c: eval_columns and 1 + plane_count outputs.
   bool has_centroid;
   // second (count, n, n): second derivatives of ρ at each of features (count, feature_count) along all pairs

@@ -2,8 +2,10 @@
 #include "overlap/geo/model.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #include "base/memory.h"
+#include "overlap/geo/slopes/slopes.h"
 #include "overlap/portions.h"
 #include "overlap/weights.h"
 
@@ -56,6 +58,31 @@ static bool has_centroid(const void *self) {
   return ((const OverlapGeoOverlap *)self)->model.network.has_centroid;
 }
 
+static Status eval_slopes(const void *self, int count, const double *pairs, double *slopes) {
+  return overlap_geo_slopes_eval(&((const OverlapGeoOverlap *)self)->model, count, pairs, slopes);
+}
+
+static size_t weight_count(const void *self) {
+  return overlap_geo_network_model(((const OverlapGeoOverlap *)self)->net)->plan->parameter_count;
+}
+
+static void read_weights(const void *self, double *parameters) {
+  memcpy(parameters, overlap_geo_network_model(((const OverlapGeoOverlap *)self)->net)->parameters,
+         weight_count(self) * sizeof *parameters);
+}
+
+static Status train(const void *self, int count, const double *pairs, const double *by, double *slope) {
+  const OverlapGeoOverlap *overlap = self;
+  return overlap_geo_slopes_train(&overlap->model, overlap_geo_network_model(overlap->net), count, pairs, by,
+                                  slope);
+}
+
+static Status write_weights(const void *self, const double *numbers, const char *path) {
+  return overlap_geo_network_write(((const OverlapGeoOverlap *)self)->net, numbers, path);
+}
+
+static const OverlapTraining training = {weight_count, read_weights, train, write_weights};
+
 // `weights`: a file, or the name of one that ships; NULL: `own`.
 static Status create_named(void **self, const char *own, const char *weights) {
   char path[4096];
@@ -85,6 +112,8 @@ const OverlapOps overlap_geo_ops = {
     .create = create_geo,
     .eval_pair = overlap_geo_model_eval_pair,
     .eval_batch = overlap_geo_model_eval_batch,
+    .eval_slopes = eval_slopes,
+    .training = &training,
     .destroy = overlap_geo_model_destroy,
 };
 
@@ -98,5 +127,7 @@ const OverlapOps overlap_geo_small_ops = {
     .create = create_geo_small,
     .eval_pair = overlap_geo_model_eval_pair,
     .eval_batch = overlap_geo_model_eval_batch,
+    .eval_slopes = eval_slopes,
+    .training = &training,
     .destroy = overlap_geo_model_destroy,
 };

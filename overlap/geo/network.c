@@ -83,6 +83,22 @@ static Status eval_columns(const void *self, const double *features, int output_
   return STATUS_OK;
 }
 
+static Status pull(const void *self, const double *features, int count, const double *seeds, double *outputs,
+                   double *slopes) {
+  enum { MOST_SEEDS = 3 };
+  const OverlapGeoNet *net = self;
+  Workspace *workspace = acquire_workspace(net);
+  double rows[MOST_SEEDS * OVERLAP_GEO_MAX_FEATURES];
+  size_t size = (size_t)net->model.plan->shape.input_count;
+  for (int n = 0; n < count; n++) memcpy(rows + size * (size_t)n, features, size * sizeof *rows);
+  workspace->work.outputs = UINT64_MAX;
+  net_forward_eval_f64(&workspace->work, &net->model, 1, features, outputs);
+  net_forward_gradient_f64(&workspace->work, &net->model, count, rows, seeds, NULL, slopes);
+  workspace->work.outputs = 1;
+  release_workspace(workspace);
+  return STATUS_OK;
+}
+
 static Status curve(const void *self, int count, const double *features, int direction_count,
                     const double *directions, double *second) {
   const OverlapGeoNet *net = self;
@@ -178,11 +194,19 @@ const NetModel_f64 *overlap_geo_network_model(const OverlapGeoNet *net) {
   return &net->model;
 }
 
+Status overlap_geo_network_write(const OverlapGeoNet *net, const double *numbers, const char *path) {
+  NetModel_f64 other = net->model; // of which the parameters alone are another's
+  other.parameters = (double *)numbers;
+  NetStatus status = net_weights_write_f64(path, &other, &net->card);
+  return status == NET_OK ? STATUS_OK : fail_as_net(status);
+}
+
 OverlapGeoNetwork overlap_geo_network_interface(const OverlapGeoNet *net) {
   return (OverlapGeoNetwork){.self = net,
                              .feature_count = net->model.plan->shape.input_count,
                              .eval = eval,
                              .eval_columns = eval_columns,
+                             .pull = pull,
                              .curve = curve,
                              .curve_columns = curve_columns,
                              .has_centroid = outputs_of(net) > 1};

@@ -24,6 +24,9 @@ void overlap_geo_network_destroy(OverlapGeoNet *net);
 // The network itself, the net's.
 const NetModel_f64 *overlap_geo_network_model(const OverlapGeoNet *net);
 
+// Numbers as many as its parameters, in their order, as a weights file of the same shape.
+Status overlap_geo_network_write(const OverlapGeoNet *net, const double *numbers, const char *path);
+
 // Borrows the net.
 OverlapGeoNetwork overlap_geo_network_interface(const OverlapGeoNet *net);
 

@@ -70,6 +70,11 @@ static Status eval_bounds(const void *self, int count, const double *pairs, doub
   return hybrid->ops->eval_bounds(hybrid->self, count, pairs, volumes, bounds);
 }
 
+static Status eval_slopes(const void *self, int count, const double *pairs, double *slopes) {
+  const Hybrid *hybrid = self;
+  return hybrid->ops->eval_slopes(hybrid->self, count, pairs, slopes);
+}
+
 const OverlapOps overlap_hybrid_ops = {
     .name = "hybrid",
     .help = "learned where a bound of its error is small, clip elsewhere: geo-small unless another is named",
@@ -81,5 +86,6 @@ const OverlapOps overlap_hybrid_ops = {
     .eval_pair = eval_pair,
     .eval_batch = eval_batch,
     .eval_bounds = eval_bounds,
+    .eval_slopes = eval_slopes,
     .destroy = destroy,
 };

@@ -5,9 +5,11 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "overlap/blend.h"
 #include "overlap/clip/clip.h"
 #include "overlap/geo/coplanar.h"
 #include "overlap/geo/model.h"
+#include "overlap/geo/slopes/slopes.h"
 #include "overlap/hybrid/share.h"
 #include "overlap/portions.h"
 #include "overlap/weights.h"
@@ -232,6 +234,43 @@ static Status eval_bounds(const void *self, int count, const double *pairs, doub
                                   bounds);
 }
 
+// ---- Of centroids.
+
+static Status mix_slopes(const Sure *sure, const double *pair, double *slopes) {
+  OverlapBlend own, clip;
+  double bound, bound_gradient[SIZE], share_gradient[SIZE];
+  unsigned flags;
+  TRY(overlap_geo_eval(&sure->geo->model, &(OverlapBatch){.pair_count = 1,
+                                                          .pairs = pair,
+                                                          .volume = &own.volume,
+                                                          .gradient = own.gradient,
+                                                          .centroid = own.centroid,
+                                                          .flags = &flags}));
+  TRY(overlap_geo_eval(
+      &sure->bound,
+      &(OverlapBatch){.pair_count = 1, .pairs = pair, .volume = &bound, .gradient = bound_gradient}));
+  TRY(overlap_geo_slopes_eval(&sure->geo->model, 1, pair, own.slopes));
+  OverlapHybridSigns signs = {.pair = pair,
+                              .doubt = sure->doubt,
+                              .volume = own.volume,
+                              .bound = flags & OVERLAP_FALLBACK ? 0 : bound,
+                              .volume_gradient = own.gradient,
+                              .bound_gradient = bound_gradient};
+  double share = overlap_hybrid_share_derive(&signs, share_gradient, NULL);
+  if (share > 0) {
+    TRY(overlap_blend_clip(pair, &clip));
+    overlap_blend_mix(share, share_gradient, &clip, &own);
+  }
+  memcpy(slopes, own.slopes, sizeof own.slopes);
+  return STATUS_OK;
+}
+
+static Status eval_slopes(const void *self, int count, const double *pairs, double *slopes) {
+  for (int i = 0; i < count; i++)
+    TRY(mix_slopes(self, pairs + SIZE * (ptrdiff_t)i, slopes + 3 * SIZE * (ptrdiff_t)i));
+  return STATUS_OK;
+}
+
 static bool has_centroid(const void *self) {
   return ((const Sure *)self)->geo->model.network.has_centroid;
 }
@@ -246,5 +285,6 @@ const OverlapOps overlap_hybrid_sure_ops = {
     .eval_pair = eval_pair,
     .eval_batch = eval_batch,
     .eval_bounds = eval_bounds,
+    .eval_slopes = eval_slopes,
     .destroy = destroy,
 };

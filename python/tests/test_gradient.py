@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Exact derivatives of static scenes, as arrays and as a function that PyTorch differentiates."""
 
+import tempfile
 import unittest
 
 import numpy as np
@@ -19,6 +20,12 @@ SCENE = {
     "contact": {"stiffness": 1e7},
 }
 DENSITY, YOUNG, DAMPING = (f"bodies.block.material.{name}" for name in ("density", "young", "damping"))
+
+
+TWO = {**SCENE, "obstacles": [], "bodies": [
+    {**SCENE["bodies"][0], "fixed": [{"group": "z_min"}]},
+    {**SCENE["bodies"][0], "name": "upper", "place": {"translate": [0.013, 0.017, 0.098]}},
+]}
 
 
 class Gradient(unittest.TestCase):
@@ -60,6 +67,23 @@ class Gradient(unittest.TestCase):
         self.assertLess(found["halved"].max(), 1e-8)
         np.testing.assert_allclose(found["along_by_runs"], found["along_by_derivatives"], rtol=1e-6)
 
+    def test_slopes_by_weights_lead_to_other_quantities(self):
+        scene, of = TWO, ["displacement:upper:z", "moment:upper:block:x"]
+        found = tetlap.gradient(scene, of, [], set={"contact.overlap": "geo-small"}, weights=True)
+        weights, share = tetlap.read_weights("geo-small"), 3e-8
+        slope = found["weights"][1]
+        self.assertEqual({name: tensor.shape for name, tensor in slope.items()}, {name: tensor.shape for name, tensor in weights.items()})
+        last = sorted(weights)[-1]  # of the layer in which V's logarithm is linear
+        moved = {name: tensor.astype(np.float64) for name, tensor in weights.items()}
+        moved[last] += share * slope[last] * np.linalg.norm(moved[last]) / np.linalg.norm(slope[last])
+        with tempfile.TemporaryDirectory() as folder:
+            path = f"{folder}/moved.safetensors"
+            tetlap.write_weights(path, moved, weights.shape, normalisation=weights.normalisation)
+            other = tetlap.gradient(scene, of, "contact.stiffness", set={"contact.overlap": path})
+        for goal in range(2):
+            expected = np.vdot(found["weights"][goal][last], moved[last] - weights[last])
+            self.assertAlmostEqual(other["value"][goal] - found["value"][goal], expected, delta=2e-3 * abs(expected))
+
     def test_what_has_no_gradient_says_why(self):
         ball = {"name": "ball", "sphere": {"centre": [0, 0, -1], "radius": 1}}
         with self.assertRaisesRegex(tetlap.RunError, "friction on a sphere"):
@@ -98,6 +122,21 @@ class Torch(unittest.TestCase):
             return 1e6 * tetlap.torch.run(SCENE, {YOUNG: 1e5 * scale[0], DENSITY: 1000 * scale[1]}, "displacement:block:z")
 
         self.assertTrue(torch.autograd.gradcheck(displacement, (scale,), eps=1e-4, rtol=1e-6, atol=1e-4))
+
+    def test_a_loss_goes_back_to_a_network(self):
+        weights = tetlap.read_weights("geo-small")
+        net = tetlap.torch.network(weights)
+        density = self.torch.tensor(1000.0, requires_grad=True)
+        of, upper = ["displacement:upper:z", "moment:upper:block:x"], "bodies.upper.material.density"
+        q = tetlap.torch.run(TWO, {upper: density}, of, network=net)
+        (3 * q[0] - q[1]).backward()
+        found = tetlap.gradient(TWO, of, upper, set={"contact.overlap": "geo-small"}, weights=True)
+        for name, tensor in net.named_parameters():
+            expected = 3 * found["weights"][0][name] - found["weights"][1][name]
+            np.testing.assert_allclose(tensor.grad.numpy(), expected, rtol=1e-3, atol=1e-4 * np.abs(expected).max())
+        self.assertAlmostEqual(density.grad.item(), 3 * found["derivative"][0, 0] - found["derivative"][1, 0], delta=1e-4 * abs(density.grad.item()))
+        with self.assertRaisesRegex(TypeError, "tetlap.torch.network"):
+            tetlap.torch.run(TWO, {}, of, network=self.torch.nn.Linear(2, 2))
 
     def test_a_chosen_stiffness_follows_the_material_and_warns_of_others(self):
         torch = self.torch

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import json
 import subprocess
+import tempfile
+from pathlib import Path
 
 import numpy as np
 
@@ -12,6 +14,7 @@ from . import _locate
 from ._errors import RunError
 from ._run import _place_scene, _Words
 from ._scene import Scene, Settings, override_texts
+from ._weights import read_weights
 
 
 def _names(value, what, example):
@@ -51,8 +54,8 @@ def _arrays(found, of, by):
         "of": of,
         "by": by,
         "value": np.array([_number(goal["value"]) for goal in goals]),
-        "derivative": np.array([[_number(cell["derivative"]) for cell in row] for row in rows]),
-        "share": np.array([[_number(cell["share"]) for cell in row] for row in rows]),
+        "derivative": np.array([[_number(cell["derivative"]) for cell in row] for row in rows]).reshape(len(of), len(by)),
+        "share": np.array([[_number(cell["share"]) for cell in row] for row in rows]).reshape(len(of), len(by)),
         "parameter": np.array([_number(cell["value"]) for cell in rows[0]]),
         "unit": [goal["unit"] for goal in goals],
         "parameter_unit": [cell["unit"] for cell in rows[0]],
@@ -66,14 +69,19 @@ def _arrays(found, of, by):
 
 
 def _check_of(goals, rows):
-    if "halved" not in rows[0][0]:
+    if not rows[0] or "halved" not in rows[0][0]:
         return {}
     along = {key: np.array([_number(goal[key]) for goal in goals]) for key in ("along_by_derivatives", "along_by_runs")}
     return {"halved": np.array([[_number(cell["halved"]) for cell in row] for row in rows]), **along}
 
 
+def _read_slopes(folder, count):
+    names = ["slope.safetensors"] if count == 1 else [f"slope-{number}.safetensors" for number in range(count)]
+    return [read_weights(Path(folder) / name) for name in names]
+
+
 def gradient(scene: Scene, of: str | list[str], by: str | list[str], *, set: Settings = None, total: bool = False,  # noqa: A002
-             at: float | None = None, check: bool = False) -> dict:
+             at: float | None = None, check: bool = False, weights: bool = False) -> dict:
     """Runs a static scene or a motion; what quantities are at its end or at other times, and
     their exact derivatives, as a dict of arrays.
 
@@ -83,25 +91,32 @@ def gradient(scene: Scene, of: str | list[str], by: str | list[str], *, set: Set
     by: a parameter's key, "bodies.ground.material.young", or a list of them.
     set: as of `tetlap.run`.
     total: a contact stiffness that the scene does not give changes with E and ν as it is chosen from them; else it is kept.
+    weights: by the weights of contact.overlap's network, too; `by` may then be empty.
 
     value (of): the quantities. derivative (of, by): dq/dp. share (of, by): p dq/dp / q. parameter (by): their values. unit and
     parameter_unit: lists of texts. does_not_act: why a derivative is 0, by key. force_residual, adjoint_residual (of),
     matrix_residual (of): how exact. With `check`, from three runs more: halved (of, by), by which share of itself a derivative moves where
-    steps are halved; along_by_derivatives and along_by_runs (of), how q changes along a random direction. contact_stiffness: "given", "kept", "follows" or "none". Where there is no number: NaN.
+    steps are halved; along_by_derivatives and along_by_runs (of), how q changes along a random direction. With `weights`, weights: dq/dw (of),
+    each as `read_weights` gives it. contact_stiffness: "given", "kept", "follows" or "none". Where there is no number: NaN.
 
     RunError: the scene has no such gradient, or the run failed; it carries the program's message.
     """
     of = _names(of, "of", "displacement:block:z")
-    by = _names(by, "by", "contact.stiffness")
+    by = [] if weights and len(by) == 0 else _names(by, "by", "contact.stiffness")
     scene, _, keeper = _place_scene(scene, None)
-    command = [_locate.program(), "gradient", str(scene), "--json", "--by", ",".join(by)] + ["--check"] * bool(check)
+    command = [_locate.program(), "gradient", str(scene), "--json"] + ["--by", ",".join(by)] * (len(by) > 0) + ["--check"] * bool(check)
     for name in of:
         command += ["--of", name]
     for text in override_texts(set):
         command += ["--set", text]
     if at is not None:
         command += ["--at", repr(float(at))]
+    command += ["--total"] * bool(total)
     try:
-        return _arrays(_execute(command + ["--total"] * bool(total)), of, by)
+        if not weights:
+            return _arrays(_execute(command), of, by)
+        with tempfile.TemporaryDirectory() as folder:
+            found = _arrays(_execute([*command, "--weights", str(Path(folder) / "slope.safetensors")]), of, by)
+            return {**found, "weights": _read_slopes(folder, len(of))}
     finally:
         del keeper

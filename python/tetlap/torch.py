@@ -12,8 +12,10 @@ down, so that no matrix of 24 x 24 is made; models without ∇²V refuse that, b
 from __future__ import annotations
 
 import os
+import tempfile
 import warnings
 from collections.abc import Mapping
+from pathlib import Path
 
 import torch
 
@@ -21,7 +23,7 @@ from ._gradient import gradient as _gradient_of_arrays
 from ._library import Model
 from ._scene import Scene, Settings, override_texts
 from ._volumes import _model, overlap as _overlap_of_arrays
-from ._weights import Weights
+from ._weights import Weights, write_weights
 
 __all__ = ["network", "overlap", "run"]
 
@@ -89,6 +91,7 @@ class _Layers(torch.nn.Module):
 
     def __init__(self, weights):
         super().__init__()
+        self.card = {key: getattr(weights, key) for key in ("shape", "normalisation", "range", "provenance")}
         count = len(weights.shape["hidden"]) + 1
         self.layer = torch.nn.ModuleList(torch.nn.Linear(*reversed(weights[f"layer.{k}.weight"].shape)) for k in range(count))
         self.activate = {"silu": torch.nn.functional.silu, "relu": torch.relu}[weights.shape["activation"]]
@@ -116,9 +119,14 @@ class _Run(torch.autograd.Function):
     """Quantities of a run, which keep their derivatives for the way back."""
 
     @staticmethod
-    def forward(ctx, scene, keys, of, overrides, at, *values):
+    def forward(ctx, scene, keys, of, overrides, at, card, names, *values):
         of_values = [f"{key}={float(value)!r}" for key, value in zip(keys, values)]
-        found = _gradient_of_arrays(scene, of, keys, set=overrides + of_values, total=True, at=at)
+        ctx.tensors = {}
+        if card is None:
+            found = _gradient_of_arrays(scene, of, keys, set=overrides + of_values, total=True, at=at)
+        else:
+            found = _run_with(scene, keys, of, overrides + of_values, at, card, dict(zip(names, values[len(keys):])))
+            ctx.tensors = {name: torch.stack([torch.from_numpy(slope[name]) for slope in found["weights"]]) for name in names}
         if found["contact_stiffness"] == "follows":
             _warn_of_choice(keys)
         ctx.derivative, ctx.dtypes = torch.from_numpy(found["derivative"]), [value.dtype for value in values]
@@ -127,8 +135,16 @@ class _Run(torch.autograd.Function):
     @staticmethod
     @torch.autograd.function.once_differentiable
     def backward(ctx, from_values):
-        by_keys = from_values @ ctx.derivative
-        return None, None, None, None, None, *(value.to(dtype) for value, dtype in zip(by_keys, ctx.dtypes))
+        slopes = list(from_values @ ctx.derivative) + [torch.tensordot(from_values, slope, 1) for slope in ctx.tensors.values()]
+        return *[None] * 7, *(slope.to(dtype) for slope, dtype in zip(slopes, ctx.dtypes))
+
+
+def _run_with(scene, keys, of, overrides, at, card, tensors):
+    """A run by a network of these tensors."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "network.safetensors"
+        write_weights(path, {name: tensor.detach() for name, tensor in tensors.items()}, **card)
+        return _gradient_of_arrays(scene, of, keys, set=[*overrides, f"contact.overlap={path}"], total=True, at=at, weights=True)
 
 
 def _warn_of_choice(keys):
@@ -138,8 +154,10 @@ def _warn_of_choice(keys):
                       "contact.stiffness", stacklevel=4)
 
 
-def _check_parameters(parameters):
-    if not parameters:
+def _check_parameters(parameters, network):
+    if network is not None and not isinstance(network, _Layers):
+        raise TypeError(f"network is a {type(network).__name__}; expected what tetlap.torch.network returns")
+    if not parameters and network is None:
         raise ValueError("parameters is empty; expected {'bodies.block.material.young': tensor}")
     for key, value in parameters.items():
         if not isinstance(value, torch.Tensor):
@@ -149,14 +167,17 @@ def _check_parameters(parameters):
 
 
 def run(scene: Scene, parameters: Mapping[str, torch.Tensor], of: str | list[str], *, set: Settings = None,  # noqa: A002
-        at: float | None = None) -> torch.Tensor:
+        at: float | None = None, network: torch.nn.Module | None = None) -> torch.Tensor:
     """The quantities `of`, at the times that they name or `at` one (as of tetlap.gradient), a tensor (of) in float64.
 
     parameters: {key of the scene: tensor of one number}; they replace the scene's values. Differentiable once by all of them. A
     contact stiffness that the scene does not give follows E and ν.
+    network: of `tetlap.torch.network`; it is the run's contact.overlap, and all its weights are differentiated by, too; `parameters`
+    may then be empty.
 
     RunError: as of tetlap.gradient.
     """
-    _check_parameters(parameters)
-    keys = list(parameters)
-    return _Run.apply(scene, keys, of, override_texts(set), at, *parameters.values())
+    _check_parameters(parameters, network)
+    keys, tensors = list(parameters), dict(network.named_parameters()) if network is not None else {}
+    card = network.card if network is not None else None
+    return _Run.apply(scene, keys, of, override_texts(set), at, card, list(tensors), *parameters.values(), *tensors.values())

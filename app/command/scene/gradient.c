@@ -10,10 +10,13 @@
 #include "app/gradient/goal.h"
 #include "app/table/table.h"
 #include "base/log.h"
+#include "fem/effect/contact/contact.h"
+#include "fem/sparse/vector.h"
 
 typedef struct Options {
   AppJobOptions job;
   AppGradientWords words;
+  const char *weights; // a file to be written; NULL: none
   bool is_checked;
 } Options;
 
@@ -33,6 +36,10 @@ static const AppOption option_table[] = {
      .count_offset = offsetof(Options, words.by_count)},
     {"at", 0, "TIME", "Take quantities at this time [s] that name none (default: the run's end)", 1,
      CLI_POSITIVE, CLI_TO(Options, words.at)},
+    {"weights", 'w', "FILE",
+     "Write dg/dw by the weights of contact.overlap's network, a geo, as a weights file of the same shape; "
+     "of several quantities FILE's stem is followed by -0, -1, …",
+     1, CLI_TEXT, CLI_TO(Options, weights), .example = "slope.safetensors"},
     {"total", 0, NULL,
      "Let a contact stiffness that the scene does not give change with E and ν as it is chosen from them "
      "(default: it is kept)",
@@ -119,6 +126,44 @@ static void print_head(const Answer *answer, int g) {
            answer->check.along[g], answer->check.between[g]);
 }
 
+// FILE, or of several quantities with a number before its ending.
+static void name_weights(const Options *options, int g, char *path, size_t size) {
+  const char *slash = strrchr(options->weights, '/'), *dot = strrchr(slash ? slash : options->weights, '.');
+  int stem = dot ? (int)(dot - options->weights) : (int)strlen(options->weights);
+  if (options->words.of_count == 1)
+    snprintf(path, size, "%s", options->weights);
+  else
+    snprintf(path, size, "%.*s-%d%s", stem, options->weights, g, dot ? dot : "");
+}
+
+static double length_of(const FemGradient *gradient, int g) {
+  const double *slope = gradient->weights + gradient->weight_count * (size_t)g;
+  return sqrt(fem_vector_dot((int)gradient->weight_count, slope, slope));
+}
+
+static void print_weights(const Answer *answer, int g) {
+  const FemGradient *gradient = &answer->found.gradient;
+  char path[4096];
+  name_weights(answer->options, g, path, sizeof path);
+  printf("|dg/dw| = %.4g by %zu weights: %s\n", length_of(gradient, g), gradient->weight_count, path);
+}
+
+static Status write_weights(const Answer *answer) {
+  const FemGradient *gradient = &answer->found.gradient;
+  OverlapModel overlap;
+  char path[4096];
+  if (!gradient->weights) return STATUS_OK;
+  TRY(fem_effect_contact_create_overlap(answer->model->scene, NULL, &overlap));
+  Status status = STATUS_OK;
+  for (int g = 0; g < answer->options->words.of_count && !status; g++) {
+    name_weights(answer->options, g, path, sizeof path);
+    status = overlap.ops->training->write(overlap.self,
+                                          gradient->weights + gradient->weight_count * (size_t)g, path);
+  }
+  overlap_model_destroy(&overlap);
+  return status;
+}
+
 static Status print_plain(const Answer *answer) {
   const AppGradientWords *words = &answer->options->words;
   if (strcmp(app_gradient_stiffness(answer->model, words), "kept") == 0)
@@ -128,7 +173,9 @@ static Status print_plain(const Answer *answer) {
     fill_rows(answer, g, rows);
     print_head(answer, g);
     AppTablePart part = part_of(answer, rows);
-    TRY(app_table_print(&(AppTable){&part, 1, words->by_count}, APP_TABLE_PLAIN, stdout));
+    if (words->by_count > 0)
+      TRY(app_table_print(&(AppTable){&part, 1, words->by_count}, APP_TABLE_PLAIN, stdout));
+    if (answer->found.gradient.weights) print_weights(answer, g);
   }
   return STATUS_OK;
 }
@@ -147,6 +194,7 @@ static void record_goal(const Answer *answer, int g, Record *record) {
     record_number(record, "along_by_derivatives", answer->check.along[g]);
     record_number(record, "along_by_runs", answer->check.between[g]);
   }
+  if (gradient->weights) record_number(record, "weights_length", length_of(gradient, g));
   Record *by = record_child(record, "by");
   for (int p = 0; p < words->by_count; p++) app_table_record(&part, p, record_child(by, words->by[p]));
 }
@@ -172,6 +220,7 @@ static Status differentiate(const Options *options, const FemModel *model) {
   Status status = app_gradient_answer(&answer.found, model, &options->words, app_job_stop_flag());
   if (!status && options->is_checked)
     status = app_gradient_check(&answer.check, &options->job, model, &options->words, &answer.found);
+  if (!status) status = write_weights(&answer);
   if (!status) status = options->job.is_json ? print_json(&answer) : print_plain(&answer);
   app_gradient_answer_destroy(&answer.found);
   return status;
@@ -180,12 +229,14 @@ static Status differentiate(const Options *options, const FemModel *model) {
 static void check(struct argp_state *state, void *given) {
   const Options *options = given;
   if (!options->words.of_count) argp_error(state, "say of what, as in --of displacement:block:z");
-  if (!options->words.by_count) argp_error(state, "say by what, as in --by contact.stiffness");
+  if (!options->words.by_count && !options->weights)
+    argp_error(state, "say by what, as in --by contact.stiffness");
 }
 
 static int run_command(int argument_count, char **arguments) {
   Options options = {0};
   app_cli_parse(&app_command_gradient, argument_count, arguments, &options);
+  options.words.by_weights = options.weights != NULL;
   app_job_prepare(&options.job);
   AppJob job;
   Status status = app_job_open(&job, &options.job, NULL, NULL);

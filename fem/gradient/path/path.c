@@ -19,6 +19,7 @@ typedef struct Behind {
   size_t capacity;
   FemFriction friction; // of the step
   FemDamping damping;   // of the step
+  FemAnswers answers;   // of the step
 } Behind;
 
 typedef struct Sweep {
@@ -44,6 +45,11 @@ static bool has_friction(const Sweep *sweep) {
   return sweep->replay.stick != NULL;
 }
 
+// Whether the matrix is J.
+static bool is_exact(const Sweep *sweep) {
+  return sweep->replay.is_near && !fem_learned_is_there(sweep->replay.system.model);
+}
+
 static bool is_damped(const Sweep *sweep) {
   return sweep->damping.effect != NULL;
 }
@@ -56,6 +62,7 @@ static void destroy_behind(Behind *behind) {
   memory_free(behind->moves);
   fem_friction_destroy(&behind->friction);
   fem_damping_destroy(&behind->damping);
+  fem_answers_destroy(&behind->answers);
 }
 
 static void destroy(Sweep *sweep) {
@@ -108,7 +115,7 @@ static Status create(Sweep *sweep, const FemModel *model, const FemGradientDef *
       !sweep->product || !sweep->factors)
     return status_no_memory("the adjoint of a run");
   for (size_t g = 0; g < goals; g++) TRY(create_behind(sweep, &sweep->behind[g]));
-  if (sweep->replay.is_exact) return STATUS_OK;
+  if (is_exact(sweep)) return STATUS_OK;
   TRY(fem_damping_create(&sweep->damping, &sweep->replay.system));
   if (has_friction(sweep)) TRY(fem_friction_create(&sweep->scratch, &sweep->replay.system));
   sweep->krylov = (FemKrylov){.self = sweep, .multiply = multiply, .precondition = precondition};
@@ -161,8 +168,7 @@ static Status solve(Sweep *sweep, double *beta, double *residual) {
   *residual = 0;
   memset(beta, 0, (size_t)sweep->replay.n * sizeof *beta);
   if (fem_equilibrium_largest(sweep->right, sweep->replay.n) == 0) return STATUS_OK; // behind all terms
-  if (!sweep->replay.is_exact)
-    return fem_krylov_solve(&sweep->krylov, sweep->right, RESIDUAL, beta, residual);
+  if (!is_exact(sweep)) return fem_krylov_solve(&sweep->krylov, sweep->right, RESIDUAL, beta, residual);
   TRY(fem_equilibrium_solve(&sweep->replay.equilibrium, sweep->right, beta));
   fem_matrix_multiply(&sweep->replay.system.matrix, beta, sweep->product);
   for (int i = 0; i < sweep->replay.n; i++) {
@@ -303,12 +309,36 @@ static Status evaluate_goals(Sweep *sweep, FemGradient *gradient) {
   for (int g = 0; g < sweep->def->goal_count; g++) {
     sweep->tangent.friction = has_friction(sweep) ? &sweep->behind[g].friction : NULL;
     sweep->tangent.damping = &sweep->behind[g].damping;
+    sweep->tangent.answers = gradient->weights ? &sweep->behind[g].answers : NULL;
     TRY(fem_goal_evaluate(&sweep->def->goals[g], &sweep->tangent, &gradient->values[g],
                           sweep->slope + values_of(sweep) * (size_t)g, factors));
     factors += sweep->def->goals[g].term_count;
   }
   sweep->tangent.friction = NULL;
   sweep->tangent.damping = NULL;
+  sweep->tangent.answers = NULL;
+  return STATUS_OK;
+}
+
+static Status begin_answers(Sweep *sweep, const FemGradient *gradient) {
+  for (int g = 0; g < sweep->def->goal_count && gradient->weights; g++) {
+    Behind *behind = &sweep->behind[g];
+    TRY(fem_tangent_begin_answers(&sweep->tangent, &behind->answers));
+    behind->friction.answers = behind->answers.by;
+  }
+  return STATUS_OK;
+}
+
+// What the step gives by weights, once friction and the goal have said their part.
+static Status train(Sweep *sweep, FemGradient *gradient) {
+  for (int g = 0; g < sweep->def->goal_count && gradient->weights; g++) {
+    Behind *behind = &sweep->behind[g];
+    sweep->tangent.answers = &behind->answers;
+    spread(sweep, of_step(sweep, behind->beta, sweep->step), -1);
+    TRY(fem_tangent_pull_contact(&sweep->tangent, CONTACT_ALL_INTERFACES, sweep->lambda, 1));
+    TRY(fem_tangent_train(&sweep->tangent, gradient->weights + gradient->weight_count * (size_t)g));
+  }
+  sweep->tangent.answers = NULL;
   return STATUS_OK;
 }
 
@@ -327,10 +357,12 @@ static Status begin_friction(Sweep *sweep) {
 static Status go_back_with(Sweep *sweep, FemGradient *gradient) {
   for (int g = 0; g < sweep->def->goal_count; g++)
     fem_damping_begin(&sweep->behind[g].damping, &sweep->replay.state);
+  TRY(begin_answers(sweep, gradient));
   TRY(begin_friction(sweep));
   TRY(evaluate_goals(sweep, gradient));
   for (int g = 0; g < sweep->def->goal_count && sweep->step > 0; g++)
     TRY(solve_step(sweep, g, &gradient->residuals[g]));
+  if (sweep->step > 0) TRY(train(sweep, gradient));
   TRY(add_parameters(sweep, gradient));
   for (int g = 0; g < sweep->def->goal_count && has_friction(sweep) && sweep->step > 0; g++)
     TRY(hand_back(sweep, &sweep->behind[g]));
@@ -471,6 +503,7 @@ Status fem_path_differentiate(FemGradient *gradient, const FemModel *model, cons
   TRY(fem_gradient_create(gradient, def));
   TRY(fem_gradient_check(model, def));
   TRY(fem_path_check(model, def));
+  TRY(fem_gradient_make_weights(gradient, model, def));
   for (int g = 0; g < def->goal_count; g++) gradient->mismatches[g] = NAN;
   if (steps->count < 2) return status_fail(STATUS_INPUT, "the run made no step");
   TRY(check_times(model, def, steps));

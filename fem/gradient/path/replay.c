@@ -91,10 +91,10 @@ static Status create_slips(FemReplay *replay) {
 
 static Status create_krylov(FemReplay *replay) {
   const FemModel *model = replay->system.model;
-  replay->is_exact = !replay->stick && !fem_system_effect(&replay->system, &fem_effect_damping);
+  replay->is_near = !replay->stick && !fem_system_effect(&replay->system, &fem_effect_damping);
   for (int l = 0; l < model->load_count; l++)
-    replay->is_exact = replay->is_exact && model->loads[l].triangle_count + model->loads[l].face_count == 0;
-  if (replay->is_exact) return STATUS_OK;
+    replay->is_near = replay->is_near && model->loads[l].triangle_count + model->loads[l].face_count == 0;
+  if (replay->is_near) return STATUS_OK;
   double **arrays[] = {&replay->ahead, &replay->aside, &replay->rate};
   bool fits = true;
   for (int i = 0; i < 3; i++) fits = (*arrays[i] = memory_zeroed((size_t)replay->n, sizeof(double))) && fits;
@@ -198,7 +198,7 @@ static Status multiply(void *self, const double *x, double *y) {
 static Status find_step(FemReplay *replay, double time, const double *u, const double *v, double c) {
   double residual;
   TRY(fem_equilibrium_factorise_moving(&replay->equilibrium, time, u, v, c, c * c));
-  if (replay->is_exact) return fem_equilibrium_solve(&replay->equilibrium, replay->force, replay->step);
+  if (replay->is_near) return fem_equilibrium_solve(&replay->equilibrium, replay->force, replay->step);
   replay->c = c;
   replay->middle = u;
   replay->speed = v;

@@ -5,13 +5,13 @@
 //   v_n = c u_n + a₁ u_{n−1} + a₂ u_{n−2},   M (c v_n + a₁ v_{n−1} + a₂ v_{n−2}) = f(u_n, t_n; history),
 //
 // a static scene from equilibrium to equilibrium (c = a₁ = a₂ = 0). The replay differs from the run by the
-// error of its steps. The matrices of friction, of damping and of following pressures are not exact, so where
-// there is one of them Newton's method solves its systems by GMRES on differences of forces.
+// error of its steps. The matrices of friction, of damping and of following pressures are far from exact, so
+// where there is one of them Newton's method solves its systems by GMRES on differences of forces.
 #ifndef TETLAP_FEM_GRADIENT_PATH_REPLAY_H
 #define TETLAP_FEM_GRADIENT_PATH_REPLAY_H
 
 #include "fem/effect/system.h"
-#include "fem/gradient/path/krylov.h"
+#include "fem/sparse/krylov.h"
 #include "fem/statics/equilibrium.h"
 
 // The ends of a run's steps, from 0 on.
@@ -38,7 +38,7 @@ typedef struct FemReplay {
   FemEquilibrium equilibrium;
   FemKrylov krylov;             // where there is friction or damping
   void *stick;                  // friction's effect, borrowed; NULL: none
-  bool is_exact;                // the matrix: no friction, damping, following pressure
+  bool is_near;                 // the matrix, to J: no friction, damping, following pressure
   int n;                        // unknowns
   double *u, *v;                // of all steps                              (count, n)
   double *force, *step;         // scratch                                   (n)

@@ -24,7 +24,14 @@
 #include "overlap/geo/features/planes.inc"
 
 const OverlapGeoKernel overlap_geo_features_kernel_avx512 = {
-    .name = "avx512", .features = features, .planes = planes, .push = push, .pull = pull, .bend = bend};
+    .name = "avx512",
+    .features = features,
+    .planes = planes,
+    .push = push,
+    .push_planes = push_planes,
+    .pull = pull,
+    .bend = bend,
+};
 
 #ifdef __clang__
 #pragma clang attribute pop

@@ -47,6 +47,9 @@ typedef struct OverlapGeoKernel {
   // The change of the features (count) along a change of P; `change` gets that of the invariants.
   void (*push)(const OverlapGeoFeatureSet *set, const OverlapGeoInvariants *invariants,
                const GeoSymmetric *projector_change, OverlapGeoInvariants *change, GeoPack *features_change);
+  // The change of those of each plane (plane_count, GEO_LANES) along that of the invariants.
+  void (*push_planes)(const OverlapGeoFeatureSet *set, const OverlapGeoInvariants *invariants,
+                      const OverlapGeoInvariants *change, GeoPack (*planes_change)[GEO_LANES]);
   // Φ = ∂φ/∂P, the derivative by P_ij and by P_ji, for ∂φ/∂features = `weights` (count).
   void (*pull)(const OverlapGeoFeatureSet *set, const OverlapGeoInvariants *invariants,
                const GeoPack *weights, OverlapGeoSweep *sweep, GeoSymmetric *slope);

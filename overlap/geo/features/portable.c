@@ -18,4 +18,11 @@
 #include "overlap/geo/features/planes.inc"
 
 const OverlapGeoKernel overlap_geo_features_kernel_portable = {
-    .name = "portable", .features = features, .planes = planes, .push = push, .pull = pull, .bend = bend};
+    .name = "portable",
+    .features = features,
+    .planes = planes,
+    .push = push,
+    .push_planes = push_planes,
+    .pull = pull,
+    .bend = bend,
+};

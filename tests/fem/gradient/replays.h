@@ -13,11 +13,13 @@ enum { MOST = 16 };
 
 typedef struct Asked {
   const char *scene, *setting;
+  const char *overlap;             // another setting; NULL: none
   const char *of[MOST], *by[MOST]; // ended by NULL
   double tolerance;                // relative to g/p, or to dg/dp where that is more; 0: 1e-6
   double step;                     // of the differences, relative; 0: 1e-4
-  int least_steps;                 // of the run; 0: 20
-  long long least_switches;        // between sticking and slipping
+  bool by_weights;
+  int least_steps;          // of the run; 0: 20
+  long long least_switches; // between sticking and slipping
 } Asked;
 
 typedef struct Answer {
@@ -44,7 +46,7 @@ static inline void find_steps(const Asked *asked, FemReplaySteps *steps) {
   FemGoal goals[MOST];
   int count = 0;
   *steps = (FemReplaySteps){0};
-  scene_open(&scene, asked->scene, (const char *const[]){asked->setting, NULL});
+  scene_open(&scene, asked->scene, (const char *const[]){asked->setting, asked->overlap, NULL});
   for (const char *const *of = asked->of; *of; of++)
     ck_assert_ok(app_gradient_read_goal(&scene.model, *of, INFINITY, &goals[count++]));
   FemRunOptions options = {.observe = record, .observer = steps};
@@ -58,7 +60,9 @@ static inline void replay(const Asked *asked, const FemReplaySteps *steps, const
                           bool with_parameters, Answer *answer) {
   SceneRun scene;
   *answer = (Answer){0};
-  scene_open(&scene, asked->scene, (const char *const[]){asked->setting, override, NULL});
+  scene_open(&scene, asked->scene,
+             asked->overlap ? (const char *const[]){asked->setting, asked->overlap, override, NULL}
+                            : (const char *const[]){asked->setting, override, NULL});
   for (const char *const *of = asked->of; *of; of++)
     ck_assert_ok(app_gradient_read_goal(&scene.model, *of, INFINITY, &answer->goals[answer->goal_count++]));
   for (const char *const *by = asked->by; *by && with_parameters; by++) {
@@ -66,8 +70,12 @@ static inline void replay(const Asked *asked, const FemReplaySteps *steps, const
     ck_assert_ok(app_gradient_read_parameter(&scene.model, *by, parameter));
     answer->values[answer->parameter_count++] = fem_parameter_value(&scene.model, parameter);
   }
-  const FemGradientDef def = {answer->goals, answer->parameters, answer->goal_count, answer->parameter_count,
-                              false};
+  const FemGradientDef def = {answer->goals,
+                              answer->parameters,
+                              answer->goal_count,
+                              answer->parameter_count,
+                              false,
+                              asked->by_weights && with_parameters};
   ck_assert_ok(fem_path_check(&scene.model, &def));
   ck_assert_ok(fem_path_differentiate(&answer->gradient, &scene.model, &def, steps));
   scene_close(&scene);

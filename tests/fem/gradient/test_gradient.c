@@ -6,9 +6,10 @@
 #include "app/gradient/goal.h"
 #include "app/gradient/parameter.h"
 #include "app/gradient/run.h"
-#include "fem/gradient/path/krylov.h"
+#include "fem/sparse/krylov.h"
 #include "folder.h"
 #include "static_solve.h"
+#include "weights.h"
 
 enum { MOST = 16 };
 
@@ -16,8 +17,9 @@ enum { MOST = 16 };
 typedef struct Asked {
   const char *scene; // of tests/scenes, or a text
   bool is_text;
+  const char *setting;             // of the scene; NULL: as it is
   const char *of[MOST], *by[MOST]; // ended by NULL
-  bool follows;
+  bool follows, by_weights;
 } Asked;
 
 typedef struct Answer {
@@ -56,8 +58,8 @@ static Status read_words(const Asked *asked, const FemModel *model, Answer *answ
     answer->idle[answer->parameter_count] = fem_parameter_idle(model, parameter);
     answer->values[answer->parameter_count++] = fem_parameter_value(model, parameter);
   }
-  answer->def = (FemGradientDef){answer->goals, answer->parameters, answer->goal_count,
-                                 answer->parameter_count, asked->follows};
+  answer->def = (FemGradientDef){answer->goals,           answer->parameters, answer->goal_count,
+                                 answer->parameter_count, asked->follows,     asked->by_weights};
   return fem_gradient_check(model, &answer->def);
 }
 
@@ -68,7 +70,9 @@ static Status run(const Asked *asked, const char *override, Answer *answer) {
   if (asked->is_text)
     scene_open_text(&scene, asked->scene);
   else
-    scene_open(&scene, asked->scene, override ? (const char *const[]){override, NULL} : NULL);
+    scene_open(&scene, asked->scene,
+               override ? (const char *const[]){override, asked->setting, NULL}
+                        : (const char *const[]){asked->setting, NULL});
   FemRunOptions options = {.observe = at_end, .observer = answer};
   Status status = read_words(asked, &scene.model, answer);
   if (!status) status = app_gradient_run(&scene.model, &answer->def, &options, &scene.result);
@@ -148,6 +152,67 @@ START_TEST(blocks_of_two_materials_agree_with_differences_of_runs) {
                               "bodies.lower.materials[0].density", "bodies.upper.materials[0].young",
                               "bodies.upper.materials[1].mooney", "bodies.upper.materials[1].density"}};
   check_against_runs(&asked);
+}
+END_TEST
+
+// Every model that has derivatives of its own; its matrix is that of clipping.
+static const char *const learned[] = {"contact.overlap=geo", "contact.overlap=geo-small",
+                                      "contact.overlap=hybrid"};
+
+START_TEST(two_blocks_by_learned_overlaps_agree_with_differences_of_runs) {
+  const Asked asked = {.scene = "gradient_blocks",
+                       .setting = learned[_i],
+                       .of = {"displacement:upper:x", "position:upper:3:x", "moment:lower:upper:y",
+                              "reaction:upper:fixed[0]:x", "energy:elastic"},
+                       .by = {"bodies.lower.material.young", "bodies.upper.material.poisson",
+                              "bodies.upper.loads[0].traction[1]", "contact.stiffness", "effects.gravity[0]",
+                              "bodies.upper.place.translate[1]"}};
+  check_against_runs(&asked);
+}
+END_TEST
+
+START_TEST(a_ball_on_a_slab_by_learned_overlaps_agrees_with_differences_of_runs) {
+  const Asked asked = {.scene = "gradient_ball",
+                       .setting = learned[_i],
+                       .of = {"displacement:slab:z", "force:ball:slab:x", "moment:slab:ball:y",
+                              "reaction:ball:driven[0]:z", "force:slab:plate:z"},
+                       .by = {"bodies.slab.material.young", "bodies.ball.material.poisson",
+                              "bodies.ball.driven[0].velocity[2]", "bodies.ball.place.translate[0]",
+                              "obstacles.plate.place.translate[1]", "obstacles.plate.motion.velocity[2]"}};
+  check_against_runs(&asked);
+}
+END_TEST
+
+START_TEST(slopes_by_weights_agree_with_differences_of_runs) {
+  static const char *const scenes[] = {"gradient_blocks", "gradient_ball"};
+  static const char *const nets[] = {"geo", "geo-small"};
+  const char *body = _i < 2 ? "upper" : "slab", *scene = scenes[_i / 2];
+  char setting[400], of[3][64];
+  snprintf(of[0], sizeof of[0], "displacement:%s:x", body);
+  snprintf(of[1], sizeof of[1], _i < 2 ? "moment:lower:upper:y" : "force:ball:slab:x");
+  snprintf(of[2], sizeof of[2], _i < 2 ? "reaction:upper:fixed[0]:x" : "reaction:slab:fixed[0]:z");
+  Weights weights = weights_open(nets[_i % 2]);
+  weights_write(&weights, 0, setting);
+  Asked asked = {.scene = scene, .setting = setting, .of = {of[0], of[1], of[2]}, .by_weights = true};
+  Answer answer, moved;
+  double found[3] = {0, 0, 0};
+  ck_assert_ok(run(&asked, NULL, &answer));
+  ck_assert_uint_eq(answer.gradient.weight_count, weights.count);
+  asked.by_weights = false;
+  for (int k = 0; k < WEIGHTS_PLACES; k++) {
+    weights_write(&weights, weights_places[k], setting);
+    ck_assert_ok(run(&asked, NULL, &moved));
+    for (int g = 0; g < 3; g++) found[g] += weights_factors[k] / weights_step * moved.gradient.values[g];
+    destroy(&moved);
+  }
+  for (int g = 0; g < 3; g++) {
+    double along = weights_along(&weights, answer.gradient.weights + weights.count * (size_t)g);
+    ck_assert_double_gt(fabs(along), 0);
+    ck_assert_msg(fabs(along - found[g]) <= 1e-5 * fabs(along), "%s by %s: along %.12g, runs %.12g, g = %.6g",
+                  of[g], nets[_i % 2], along, found[g], answer.gradient.values[g]);
+  }
+  destroy(&answer);
+  weights_close(&weights);
 }
 END_TEST
 
@@ -333,8 +398,8 @@ static void refuse(const char *time, const char *material, const char *keys, con
 START_TEST(what_has_no_gradient_is_refused_by_name) {
   refuse(STATIC, NU ", law: stvk, plasticity: {yield: 1e3}", "", NULL, YOUNG, "yields");
   refuse(STATIC, NU, "    loads: [{group: z_max, torque: [0, 0, 1]}]\n", NULL, YOUNG, "loads[0] is a torque");
-  refuse(STATIC, NU, "", "stiffness: 1e6, overlap: geo", YOUNG, "clip");
-  refuse(STATIC, NU, "", "stiffness: 1e6, overlap: tpn", YOUNG, "clip");
+  refuse(STATIC, NU, "", "stiffness: 1e6, overlap: tpn", YOUNG, "'tpn' has no derivatives of its centroid");
+  refuse(STATIC, NU, "", "overlap: geo, law: 1e6*d", YOUNG, "pressure law");
   refuse(STATIC, NU, "", "stiffness: 1e6, potential: nodal", YOUNG, "gradients need field");
   refuse(STATIC, NU, "", "stiffness: 1e6, hessian: gauss_newton", YOUNG, "contact.hessian");
 }
@@ -386,6 +451,8 @@ START_TEST(quantities_that_are_not_there_are_refused_by_name) {
   write_block(text, STATIC, NU, "", NULL);
   expect_refusal_of(text, "force:block:z", YOUNG, "no contact");
   expect_refusal_of(text, "energy:contact", YOUNG, "no contact");
+  write_block(text, STATIC, NU, "", "stiffness: 1e6, overlap: geo");
+  expect_refusal_of(text, "energy", YOUNG, "clip alone");
   char word[256];
   write_file("wrong.csv", "energy, 1\nenergy, x\n", word, "sum");
   expect_refusal_of(text, word, YOUNG, "wrong.csv:2: expected quantity, weight");
@@ -483,6 +550,9 @@ int main(void) {
   tcase_add_checked_fixture(test_case, folder_make, folder_remove);
   tcase_add_test(test_case, two_blocks_agree_with_differences_of_runs);
   tcase_add_test(test_case, blocks_of_two_materials_agree_with_differences_of_runs);
+  tcase_add_loop_test(test_case, two_blocks_by_learned_overlaps_agree_with_differences_of_runs, 0, 3);
+  tcase_add_loop_test(test_case, a_ball_on_a_slab_by_learned_overlaps_agrees_with_differences_of_runs, 0, 3);
+  tcase_add_loop_test(test_case, slopes_by_weights_agree_with_differences_of_runs, 0, 4);
   tcase_add_test(test_case, a_driven_slab_upon_obstacles_agrees_with_differences_of_runs);
   tcase_add_test(test_case, quadratic_elements_between_moving_shapes_agree_with_differences_of_runs);
   tcase_add_test(test_case, a_chosen_stiffness_that_follows_agrees_with_differences_of_runs);

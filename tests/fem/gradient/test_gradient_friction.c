@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gradients with friction against central differences of replays with the same steps.
 #include "replays.h"
+#include "weights.h"
 
 START_TEST(a_block_that_is_rubbed_agrees_with_differences_of_replays) {
   const Asked asked = {.scene = "gradient_rub",
@@ -13,6 +14,53 @@ START_TEST(a_block_that_is_rubbed_agrees_with_differences_of_replays) {
                               "contact.friction", "contact.stiffness", "bodies.upper.driven[0].table[2][1]",
                               "bodies.upper.driven[0].table[1][3]", "bodies.upper.place.translate[1]"}};
   check_against_replays(&asked);
+}
+END_TEST
+
+static const char *const learned[] = {"contact.overlap=geo-small", "contact.overlap=hybrid"};
+
+START_TEST(a_block_that_is_rubbed_by_learned_overlaps_agrees_with_differences_of_replays) {
+  const Asked asked = {.scene = "gradient_rub",
+                       .setting = "time.end=1",
+                       .overlap = learned[_i],
+                       .least_steps = 7,
+                       .least_switches = 20,
+                       .of = {"probe:top:x", "force:upper:lower:x", "reaction:upper:driven[0]:y"},
+                       .by = {"bodies.lower.material.young", "contact.friction", "contact.stiffness",
+                              "bodies.upper.driven[0].table[1][3]", "bodies.upper.place.translate[1]"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
+// By weights, through all steps.
+static void check_weights(const char *scene, const char *setting, const char *of) {
+  char overlap[400];
+  Weights weights = weights_open("geo-small");
+  Asked asked = {.scene = scene, .setting = setting, .overlap = overlap, .of = {of}, .by_weights = true};
+  FemReplaySteps steps;
+  Answer answer, moved;
+  double found = 0;
+  weights_write(&weights, 0, overlap);
+  find_steps(&asked, &steps);
+  replay(&asked, &steps, NULL, true, &answer);
+  for (int k = 0; k < WEIGHTS_PLACES; k++) {
+    weights_write(&weights, weights_places[k], overlap);
+    replay(&asked, &steps, NULL, false, &moved);
+    found += weights_factors[k] / weights_step * moved.gradient.values[0];
+    destroy(&moved);
+  }
+  double along = weights_along(&weights, answer.gradient.weights);
+  ck_assert_msg(fabs(along - found) <= 1e-5 * fabs(along), "%s: along %.12g, replays %.12g, g = %.6g", of,
+                along, found, answer.gradient.values[0]);
+  destroy(&answer);
+  fem_replay_steps_destroy(&steps);
+  weights_close(&weights);
+}
+
+START_TEST(slopes_by_weights_agree_with_differences_of_replays) {
+  check_weights("gradient_rub", "time.end=1", "force:upper:lower:x");
+  check_weights("gradient_motion", "time.end=0.06", "displacement:upper:z");
+  check_weights("gradient_slide", "time.end=0.02", "displacement:upper:x");
 }
 END_TEST
 
@@ -109,6 +157,10 @@ END_TEST
 int main(void) {
   TCase *test_case = tcase_create("gradient_friction");
   tcase_add_test(test_case, a_block_that_is_rubbed_agrees_with_differences_of_replays);
+  tcase_add_loop_test(test_case,
+                      a_block_that_is_rubbed_by_learned_overlaps_agrees_with_differences_of_replays, 0, 2);
+  tcase_add_checked_fixture(test_case, folder_make, folder_remove);
+  tcase_add_test(test_case, slopes_by_weights_agree_with_differences_of_replays);
   tcase_add_test(test_case, a_slab_between_obstacles_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_slab_under_a_rolling_cylinder_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_slab_on_a_plate_of_tetrahedra_agrees_with_differences_of_replays);

@@ -48,6 +48,19 @@ START_TEST(goals_at_earlier_times_agree_with_differences_of_replays) {
 }
 END_TEST
 
+static const char *const learned[] = {"contact.overlap=geo-small", "contact.overlap=hybrid"};
+
+START_TEST(a_block_thrown_by_learned_overlaps_agrees_with_differences_of_replays) {
+  const Asked asked = {
+      .scene = "gradient_motion",
+      .setting = "time.end=0.06",
+      .overlap = learned[_i],
+      .of = {"displacement:upper:z", "position:upper:3:x", "reaction:lower:driven[0]:z"},
+      .by = {"bodies.lower.material.young", "bodies.upper.velocity[2]", "contact.stiffness"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
 START_TEST(a_block_of_two_materials_agrees_with_differences_of_replays) {
   const Asked asked = {
       .scene = "gradient_motion",
@@ -151,8 +164,8 @@ static void refuse(const char *override, const char *by, const char *why) {
   scene_open(&scene, "gradient_motion", (const char *const[]){override, NULL});
   Status status = app_gradient_read_parameter(&scene.model, by, &parameter);
   ck_assert_ok(status);
-  status = fem_path_differentiate(&gradient, &scene.model, &(FemGradientDef){NULL, &parameter, 0, 1, false},
-                                  &steps);
+  status = fem_path_differentiate(&gradient, &scene.model,
+                                  &(FemGradientDef){NULL, &parameter, 0, 1, false, false}, &steps);
   ck_assert_int_eq(status, STATUS_INPUT);
   ck_assert_msg(strstr(status_message(), why) != NULL, "%s: %s", override, status_message());
   fem_gradient_destroy(&gradient);
@@ -181,6 +194,7 @@ int main(void) {
   tcase_add_checked_fixture(test_case, folder_make, folder_remove);
   tcase_add_test(test_case, a_block_thrown_upon_a_shaken_one_agrees_with_differences_of_replays);
   tcase_add_test(test_case, goals_at_earlier_times_agree_with_differences_of_replays);
+  tcase_add_loop_test(test_case, a_block_thrown_by_learned_overlaps_agrees_with_differences_of_replays, 0, 2);
   tcase_add_test(test_case, a_block_of_two_materials_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_motion_that_ends_in_contact_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_damped_block_thrown_upon_another_agrees_with_differences_of_replays);

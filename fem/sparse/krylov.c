@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/gradient/path/krylov.h"
+#include "fem/sparse/krylov.h"
 
 #include <math.h>
 #include <string.h>
