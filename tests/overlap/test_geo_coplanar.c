@@ -79,7 +79,12 @@ static void blend(const double pair[24], double *volume, double gradient[24], do
   OverlapGeoModel model;
   unsigned flags;
   ck_assert_ok(overlap_geo_create(&model, NULL));
-  OverlapBatch batch = {1, pair, volume, gradient, hessian, &flags, NULL};
+  OverlapBatch batch = {.pair_count = 1,
+                        .pairs = pair,
+                        .volume = volume,
+                        .gradient = gradient,
+                        .hessian = hessian,
+                        .flags = &flags};
   ck_assert_ok(overlap_geo_eval(&model, &batch));
   ck_assert_uint_ne(flags & OVERLAP_BLENDED, 0);
 }
