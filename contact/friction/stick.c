@@ -296,8 +296,7 @@ static void share_areas(ContactStick *stick, const ContactStickHistory *history,
     for (int k = 0; k < 2; k++) stick->areas[i][k] = is_resting && is_resting[i] ? history->areas[i][k] : 0;
   for (int n = 0; n < stick->node_count; n++) {
     const ContactStickNode *node = &stick->nodes[n];
-    stick->areas[node->interface][node->slides] +=
-        node->stiffness / stick->laws[node->interface].stiffness;
+    stick->areas[node->interface][node->slides] += node->stiffness / stick->laws[node->interface].stiffness;
   }
 }
 

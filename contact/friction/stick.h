@@ -63,7 +63,8 @@ typedef struct ContactStickLaw {
   double weight[2]; // of each side as slave: 1 and 0, 0 and 1, or ½ and ½
 } ContactStickLaw;
 
-// A slave's vertex at the positions of the last evaluation.
+// A slave's vertex at the positions of the last evaluation. Where its press grows a little, what slides
+// sticks for a step: that counts as sliding, and as rest only if it sticks for another one, or turns back.
 typedef struct ContactStickNode {
   int interface, vertex;
   int begin, end;        // of its touches
@@ -81,10 +82,9 @@ typedef struct ContactStickNode {
   double slid[3];        // F_a G_a, since it was last touched [m]
   double way;            // Σ |s_trial − s| so far [m]
   double work;           // dissipated at it so far [J]
-  bool slips;    // its stretch is cut off: k |s_trial| > L
-  bool advances; // the way since the last accepted state goes along s_trial
-  bool slides;   // slips, or did up to the last accepted state and advances: where its press grows a little,
-                 // what slides sticks for a step
+  bool slips;            // its stretch is cut off: k |s_trial| > L
+  bool advances;         // the way since the last accepted state goes along s_trial
+  bool slides;           // it slips, or did up to the last accepted state and advances
 } ContactStickNode;
 
 // A corner of a pair that is a slave: which node, with which share of it.
