@@ -13,6 +13,9 @@ enum { MAX_ITERATIONS = 30, STICKS = 1, SLIPS = 2 };
 // A step is balanced once Newton's method does not halve what is left, which is then at most this share of
 // the largest force.
 static const double LEAST_FALL = 0.5, BALANCE = 1e-9;
+// The matrix's factor serves on while each step by it leaves at most this; below that share of the largest
+// force nothing is left but rounding.
+static const double SWIFT = 0.1, ROUNDED = 1e-12;
 // Of a system that GMRES solves, the share of the right side that may be left; and how far coordinates move
 // for a difference of forces, as a share of the mean edge.
 static const double INEXACT = 1e-4, WAY = 1e-7;
@@ -194,10 +197,11 @@ static Status multiply(void *self, const double *x, double *y) {
   return STATUS_OK;
 }
 
-// Newton's step from u and v, whose residual is in `force`.
-static Status find_step(FemReplay *replay, double time, const double *u, const double *v, double c) {
+// Newton's step from u and v, whose residual is in `force`; `is_fresh`: with the matrix there.
+static Status find_step(FemReplay *replay, double time, const double *u, const double *v, double c,
+                        bool is_fresh) {
   double residual;
-  TRY(fem_equilibrium_factorise_moving(&replay->equilibrium, time, u, v, c, c * c));
+  if (is_fresh) TRY(fem_equilibrium_factorise_moving(&replay->equilibrium, time, u, v, c, c * c));
   if (replay->is_near) return fem_equilibrium_solve(&replay->equilibrium, replay->force, replay->step);
   replay->c = c;
   replay->middle = u;
@@ -209,14 +213,18 @@ static Status balance(FemReplay *replay, int k) {
   double c = fem_replay_formula(replay, k).c, time = replay->steps->times[k], left;
   size_t n = (size_t)replay->n;
   double *u = replay->u + n * (size_t)k, *v = replay->v + n * (size_t)k;
+  bool is_fresh = true;
   TRY(find_residual(replay, k, &left));
   for (int i = 0; i < MAX_ITERATIONS && left > 0; i++) {
     double last = left;
-    TRY(find_step(replay, time, u, v, c));
+    bool was_fresh = is_fresh;
+    TRY(find_step(replay, time, u, v, c, is_fresh));
     for (size_t j = 0; j < n; j++) u[j] += replay->step[j];
     TRY(find_residual(replay, k, &left));
     double scale = scale_of(replay, k, c);
-    if (!(left <= BALANCE * scale) || left <= LEAST_FALL * last) continue;
+    is_fresh = !(left <= SWIFT * last);
+    if (!(left <= BALANCE * scale)) continue;
+    if (left > ROUNDED * scale && (left <= LEAST_FALL * last || !was_fresh)) continue;
     replay->worst = fmax(replay->worst, left / scale);
     return STATUS_OK;
   }
@@ -253,12 +261,25 @@ static Status keep_histories(FemReplay *replay, int k) {
   return STATUS_OK;
 }
 
+// Where three points before it lead to; at the beginning, the velocity.
+static double lead(const double *t, const double *u, size_t n, int k, const double *v) {
+  if (k < 3) return u[-(ptrdiff_t)n] + (t[k] - t[k - 1]) * v[-(ptrdiff_t)n];
+  double sum = 0;
+  for (int i = 1; i <= 3; i++) {
+    double share = 1;
+    for (int j = 1; j <= 3; j++)
+      if (j != i) share *= (t[k] - t[k - j]) / (t[k - i] - t[k - j]);
+    sum += share * u[-(ptrdiff_t)(n * (size_t)i)];
+  }
+  return sum;
+}
+
 static void guess(FemReplay *replay, int k) {
   size_t n = (size_t)replay->n;
   const double *t = replay->steps->times, *found = replay->steps->u;
   double *u = replay->u + n * (size_t)k, *v = replay->v + n * (size_t)k;
   if (found) memcpy(u, found + n * (size_t)k, n * sizeof *u);
-  for (size_t i = 0; i < n && !found; i++) u[i] = u[i - n] + (t[k] - t[k - 1]) * v[i - n];
+  for (size_t i = 0; i < n && !found; i++) u[i] = lead(t, u + i, n, k, v + i);
 }
 
 static Status step(FemReplay *replay, int k) {

@@ -405,6 +405,28 @@ START_TEST(what_has_no_gradient_is_refused_by_name) {
 }
 END_TEST
 
+// What the last state alone does not tell is left to paths.
+static void refuse_to_find(const char *name, const char *why) {
+  SceneRun scene;
+  FemSystem system;
+  FemGradient gradient = {0};
+  scene_open(&scene, name, NULL);
+  ck_assert_ok(fem_system_create(&system, &scene.model));
+  ck_assert(fem_gradient_is_path(&scene.model));
+  ck_assert_int_eq(fem_gradient_find(&gradient, &system, &(FemGradientDef){0}), STATUS_INPUT);
+  ck_assert_msg(strstr(status_message(), why) != NULL, "%s: %s", name, status_message());
+  fem_gradient_destroy(&gradient);
+  fem_system_destroy(&system);
+  scene_close(&scene);
+}
+
+START_TEST(an_equilibrium_alone_is_refused_where_it_does_not_tell) {
+  refuse_to_find("gradient_motion", "the scene moves");
+  refuse_to_find("gradient_rub", "friction remembers");
+  refuse_to_find("gradient_inflate", "the matrix is not symmetric");
+}
+END_TEST
+
 START_TEST(parameters_without_a_derivative_are_refused_by_name) {
   const char *load = "    loads: [{group: z_max, force: [0, 0, 0]}]\n";
   const char *driven = "    driven: [{group: z_max, velocity: [0, 0, -1]}]\n";
@@ -562,6 +584,7 @@ int main(void) {
   tcase_add_test(test_case, a_run_with_goals_ends_at_the_last_of_them);
   tcase_add_test(test_case, what_does_not_act_has_the_derivative_0_and_a_reason);
   tcase_add_test(test_case, what_has_no_gradient_is_refused_by_name);
+  tcase_add_test(test_case, an_equilibrium_alone_is_refused_where_it_does_not_tell);
   tcase_add_test(test_case, parameters_without_a_derivative_are_refused_by_name);
   tcase_add_test(test_case, quantities_that_are_not_there_are_refused_by_name);
   tcase_add_test(test_case, what_is_left_unsolved_is_no_gradient);
