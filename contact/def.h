@@ -87,8 +87,7 @@ typedef struct ContactSystemDef {
   // A pressure law of the potential `field` for each body with each party, in place of κ; an entry NULL:
   // linear. NULL: all are. Read in creation, the laws are borrowed.
   const struct ContactLaw *const *pair_laws; // (body_count, body_count + shape_count)
-  double margin;         // skin margin while bodies are near [m]; 0: half the shortest mean edge of a body
-  bool use_full_hessian; // of `field`: all of ∂²U/∂x²; else its part that is never negative
+  double margin; // skin margin while bodies are near [m]; 0: half the shortest mean edge of a body
   const OverlapModel *model; // borrowed
 } ContactSystemDef;
 

@@ -155,7 +155,6 @@ static void hand_on(ContactStiffness *stiffness, const ContactStiffnessSink *sin
 
 static void bend(const ContactLayout *layout, const ContactEvaluation *evaluation, int k,
                  const double *slopes, double *matrix) {
-  bool is_full = layout->def.use_full_hessian;
   const ContactPair *pair = &evaluation->pairs[k];
   double coordinates[OVERLAP_PAIR_SIZE];
   if (!contact_layout_has_field(layout)) {
@@ -165,7 +164,7 @@ static void bend(const ContactLayout *layout, const ContactEvaluation *evaluatio
   }
   memcpy(coordinates, evaluation->coordinates + OVERLAP_PAIR_SIZE * (size_t)k, sizeof coordinates);
   if (pair->cells[1] < 0) {
-    contact_field_bend_shape(layout, pair, evaluation->time, coordinates, is_full, matrix);
+    contact_field_bend_shape(layout, pair, evaluation->time, coordinates, matrix);
     return;
   }
   if (slopes) {
@@ -173,7 +172,7 @@ static void bend(const ContactLayout *layout, const ContactEvaluation *evaluatio
     return;
   }
   contact_layout_unsettle_pair(layout, pair, coordinates);
-  contact_field_bend(layout, pair, coordinates, is_full, matrix);
+  contact_field_bend(layout, pair, coordinates, matrix);
 }
 
 Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *layout,

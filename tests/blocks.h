@@ -76,7 +76,6 @@ static inline ContactSystemDef blocks_def(const Blocks *blocks, const double *re
                             .bodies = blocks->bodies,
                             .body_count = blocks->body_count,
                             .stiffness = 1000,
-                            .use_full_hessian = true,
                             .model = model};
 }
 

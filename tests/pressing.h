@@ -26,7 +26,7 @@ typedef struct Scene {
   ContactSystem *system;
 } Scene;
 
-static inline void start(Scene *scene, const char *model, bool is_full) {
+static inline void start(Scene *scene, const char *model) {
   scene->rest = scene->rest ? scene->rest : blocks_copy(&scene->blocks);
   scene->still = calloc(3 * (size_t)scene->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(scene->still);
@@ -34,7 +34,6 @@ static inline void start(Scene *scene, const char *model, bool is_full) {
   ContactSystemDef def = blocks_def(&scene->blocks, scene->rest, &scene->model);
   def.potential = CONTACT_POTENTIAL_FIELD;
   def.stiffness = STIFFNESS;
-  def.use_full_hessian = is_full;
   def.shapes = &scene->shape, def.shape_count = scene->shape_count;
   def.inner = scene->inner;
   const ContactLaw *laws[BLOCKS_MAX * (BLOCKS_MAX + 1)];

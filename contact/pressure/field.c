@@ -62,11 +62,10 @@ static void add_triangle(Sums *sums, const ContactTriangle *triangle, const doub
           doubled / 12 * (r[z] * r[w] + p[z] * p[w] + q[z] * q[w] + sum[z] * sum[w]);
 }
 
-// ∫ ψ_z ψ_w over the faces with a bit in `wanted`.
-static void add_faces(ContactClipped *clipped, unsigned wanted, Sums *sums) {
+// ∫ ψ_z ψ_w over the faces.
+static void add_faces(ContactClipped *clipped, Sums *sums) {
   for (int i = 0; i < clipped->triangle_count; i++) {
     const ContactTriangle *triangle = &clipped->triangles[i];
-    if (!(wanted >> triangle->face & 1)) continue;
     add_triangle(sums, triangle, contact_clipped_lanes(clipped, triangle->vertex[0]),
                  contact_clipped_lanes(clipped, triangle->vertex[1]),
                  contact_clipped_lanes(clipped, triangle->vertex[2]));
@@ -150,18 +149,17 @@ static void add_turning_of(const ContactClipped *clipped, const double first[8],
   add_turning(first, t, factor, own, slopes, matrix);
 }
 
-static void bend_linear(ContactClipped *clipped, const ContactSide sides[2], unsigned wanted, bool is_full,
-                        double stiffness, double *matrix) {
+static void bend_linear(ContactClipped *clipped, const ContactSide sides[2], double stiffness,
+                        double *matrix) {
   Sums sums;
   memset(&sums, 0, sizeof sums);
-  add_faces(clipped, wanted, &sums);
-  if (is_full) add_volume(clipped, &sums);
+  add_faces(clipped, &sums);
+  add_volume(clipped, &sums);
   for (int t = 0; t < 2; t++) {
     double factor = stiffness * sides[1 - t].s;
     for (int f = 4 * t; f < 4 * t + 4; f++)
-      if (wanted >> f & 1 && sums.fraction[f] != 0)
-        add_main(clipped, sums.face[f], f, factor, &sides[t], matrix);
-    if (is_full) add_turning_of(clipped, sums.first, t, factor, &sides[t], matrix);
+      if (sums.fraction[f] != 0) add_main(clipped, sums.face[f], f, factor, &sides[t], matrix);
+    add_turning_of(clipped, sums.first, t, factor, &sides[t], matrix);
   }
 }
 
@@ -174,34 +172,30 @@ static void add_bulk(double squares[8][8], double factor, const ContactSide *own
           ((r < 12) == (k < 12) ? factor : -factor) * squares[r / 3][k / 3] * g[r % 3] * g[k % 3];
 }
 
-static void bend_by_law(ContactClipped *clipped, const ContactSide sides[2], unsigned wanted, bool is_full,
-                        const ContactLaw *law, double *matrix) {
+static void bend_by_law(ContactClipped *clipped, const ContactSide sides[2], const ContactLaw *law,
+                        double *matrix) {
   ContactFieldLawSums sums;
-  contact_field_law_add(clipped, law, sides, wanted, &sums);
+  contact_field_law_add(clipped, law, sides, &sums);
   for (int t = 0; t < 2; t++) {
     double factor = CONTACT_FIELD_HALF * sides[1 - t].s;
-    for (int f = 4 * t; f < 4 * t + 4; f++)
-      if (wanted >> f & 1) add_main(clipped, sums.face[f], f, factor, &sides[t], matrix);
+    for (int f = 4 * t; f < 4 * t + 4; f++) add_main(clipped, sums.face[f], f, factor, &sides[t], matrix);
     add_bulk(sums.second[t], factor, &sides[t], matrix);
-    if (is_full) add_turning_of(clipped, sums.first[t], t, factor, &sides[t], matrix);
+    add_turning_of(clipped, sums.first[t], t, factor, &sides[t], matrix);
   }
 }
 
 void contact_field_bend(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
-                        bool is_full, double matrix[576]) {
+                        double matrix[576]) {
   ContactClipped clipped;
   const ContactInterfaceDef *interface = &layout->interfaces[pair->interface];
   memset(matrix, 0, 576 * sizeof *matrix);
-  unsigned wanted = 0;
-  for (int f = 0; f < 8; f++) wanted |= (unsigned)(is_full || is_outer(layout, pair, f)) << f;
-  if (!wanted && !interface->law) return;
   if (!contact_clipped_make(&clipped, layout, pair, coordinates)) return;
   ContactSide sides[2];
   for (int t = 0; t < 2; t++) sides[t] = contact_side_of(layout, pair->cells[t], coordinates + 12 * t);
   if (interface->law)
-    bend_by_law(&clipped, sides, wanted, is_full, interface->law, matrix);
+    bend_by_law(&clipped, sides, interface->law, matrix);
   else
-    bend_linear(&clipped, sides, wanted, is_full, interface->stiffness, matrix);
+    bend_linear(&clipped, sides, interface->stiffness, matrix);
 }
 
 // ---- First derivatives of forces.
@@ -299,7 +293,7 @@ void contact_field_press_shape(const ContactLayout *layout, const ContactPair *p
   double rest = contact_layout_tet_volume(layout, pair->cells[0]);
   *field = (ContactFieldPair){.law = interface->law};
   memset(forces, 0, 24 * sizeof *forces);
-  contact_shape_press(shape, time, tet, rest, &field->volume, &field->energy, forces, NULL, true);
+  contact_shape_press(shape, time, tet, rest, &field->volume, &field->energy, forces, NULL);
   if (!(field->volume > 0)) return;
   double stiffness = interface->law ? 1 : interface->stiffness;
   field->energy *= stiffness;
@@ -311,24 +305,23 @@ void contact_field_press_shape(const ContactLayout *layout, const ContactPair *p
   field->depths[1] = field->energy / (stiffness * field->weighed[0]);
   vec3_store(field->slopes[1], vec3_scale(-1 / (stiffness * field->weighed[0]), force));
   if (interface->law) {
-    contact_field_law_press_shape(shape, interface->law, time, tet, rest, &field->energy, forces, NULL, true);
+    contact_field_law_press_shape(shape, interface->law, time, tet, rest, &field->energy, forces, NULL);
     for (int k = 0; k < 12; k++) forces[k] = -forces[k];
   }
   find_resultant(tet, forces, field);
 }
 
 void contact_field_bend_shape(const ContactLayout *layout, const ContactPair *pair, double time,
-                              const double tet[12], bool is_full, double matrix[144]) {
+                              const double tet[12], double matrix[144]) {
   const ContactInterfaceDef *interface = &layout->interfaces[pair->interface];
   double volume, energy, gradient[12];
   if (interface->law) {
     contact_field_law_press_shape(&layout->def.shapes[interface->shape], interface->law, time, tet,
                                   contact_layout_tet_volume(layout, pair->cells[0]), &energy, gradient,
-                                  matrix, is_full);
+                                  matrix);
     return;
   }
   contact_shape_press(&layout->def.shapes[interface->shape], time, tet,
-                      contact_layout_tet_volume(layout, pair->cells[0]), &volume, &energy, gradient, matrix,
-                      is_full);
+                      contact_layout_tet_volume(layout, pair->cells[0]), &volume, &energy, gradient, matrix);
   for (int e = 0; e < 144; e++) matrix[e] *= interface->stiffness;
 }

@@ -46,10 +46,10 @@ void contact_field_press_shape(const ContactLayout *layout, const ContactPair *p
                                const double tet[12], ContactFieldPair *field, double forces[24]);
 
 // ∂²U/∂x² of a pair by the vertices of the two tetrahedra, (24, 24), symmetric; the coordinates are those of
-// the cells in general position (contact_layout_unsettle_pair). Not full: the main term on outer faces,
-// positive semidefinite. Clipping finds P, whatever model gave V and x̄.
+// the cells in general position (contact_layout_unsettle_pair). Clipping finds P, whatever model gave V and
+// x̄.
 void contact_field_bend(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
-                        bool is_full, double matrix[576]);
+                        double matrix[576]);
 
 // −∂f/∂x of the pair's forces by the vertices of the two tetrahedra, (24, 24), row by row of f, exactly, of a
 // model whose ∂V/∂x and ∂x̄/∂x by the cells' coordinates are `slopes` (4, 24); no law. Unlike ∂²U/∂x² it is
@@ -59,6 +59,6 @@ void contact_field_turn(const ContactLayout *layout, const ContactPair *pair, co
 
 // ∂²U/∂x² of a shape and a tetrahedron, (12, 12).
 void contact_field_bend_shape(const ContactLayout *layout, const ContactPair *pair, double time,
-                              const double tet[12], bool is_full, double matrix[144]);
+                              const double tet[12], double matrix[144]);
 
 #endif

@@ -224,11 +224,11 @@ static void add_body(ContactClipped *clipped, const ContactLaw *law, const Conta
 }
 
 void contact_field_law_add(ContactClipped *clipped, const ContactLaw *law, const ContactSide sides[2],
-                           unsigned wanted, ContactFieldLawSums *sums) {
+                           ContactFieldLawSums *sums) {
   memset(sums, 0, sizeof *sums);
   for (int i = 0; i < clipped->triangle_count; i++) {
     const ContactTriangle *triangle = &clipped->triangles[i];
-    if (wanted >> triangle->face & 1) add_face(clipped, law, sides, triangle, sums);
+    add_face(clipped, law, sides, triangle, sums);
     add_body(clipped, law, sides, triangle, sums);
   }
 }
@@ -280,7 +280,6 @@ typedef struct Pressed {
   double time;
   const double *tet;
   double rest_volume;
-  bool is_full;
   double *energy, *gradient, *hessian; // the last may be NULL
 } Pressed;
 
@@ -291,7 +290,7 @@ static void add_layer(const Pressed *pressed, double depth, double weight) {
   ContactShape smaller = contact_shape_shrink(pressed->shape, depth, &solid);
   if (weight == 0) return;
   contact_shape_press(&smaller, pressed->time, pressed->tet, pressed->rest_volume, &volume, &energy, gradient,
-                      pressed->hessian ? hessian : NULL, pressed->is_full);
+                      pressed->hessian ? hessian : NULL);
   if (!(volume > 0)) return;
   if (smaller.kind == CONTACT_SHAPE_BALL) weight *= smaller.radius / pressed->shape->radius;
   *pressed->energy += weight * energy;
@@ -341,8 +340,8 @@ static void add_all_layers(const Pressed *pressed, const ContactLaw *law, double
 
 void contact_field_law_press_shape(const ContactShape *shape, const ContactLaw *law, double time,
                                    const double tet[12], double rest_volume, double *energy,
-                                   double gradient[12], double hessian[144], bool is_full) {
-  Pressed pressed = {shape, time, tet, rest_volume, is_full, energy, gradient, hessian};
+                                   double gradient[12], double hessian[144]) {
+  Pressed pressed = {shape, time, tet, rest_volume, energy, gradient, hessian};
   *energy = 0;
   memset(gradient, 0, 12 * sizeof *gradient);
   if (hessian) memset(hessian, 0, 144 * sizeof *hessian);

@@ -45,7 +45,7 @@ typedef struct ContactFieldLawSums {
 } ContactFieldLawSums;
 
 void contact_field_law_add(ContactClipped *clipped, const ContactLaw *law, const ContactSide sides[2],
-                           unsigned wanted, ContactFieldLawSums *sums);
+                           ContactFieldLawSums *sums);
 
 // Energy [J], its derivatives [N] by the tetrahedron's vertices and, where not NULL, [N/m], of a tetrahedron
 // of that rest volume and a shape that it overlaps. By layers: with E(c) the energy at 1 Pa/m against the
@@ -54,6 +54,6 @@ void contact_field_law_add(ContactClipped *clipped, const ContactLaw *law, const
 //   U = p′(0) E(0) + ∫ p″(c) E(c) dc.
 void contact_field_law_press_shape(const ContactShape *shape, const ContactLaw *law, double time,
                                    const double tet[12], double rest_volume, double *energy,
-                                   double gradient[12], double hessian[144], bool is_full);
+                                   double gradient[12], double hessian[144]);
 
 #endif

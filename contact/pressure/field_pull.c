@@ -197,7 +197,7 @@ void contact_field_pull_shape(const ContactLayout *layout, const ContactPair *pa
   }
   for (int v = 0; v < 4; v++)
     vec3_store(by_force + 3 * v, vec3_add(force_slope, vec3_scale(by->weights[0][v] / square, force)));
-  contact_field_bend_shape(layout, pair, time, tet, true, matrix);
+  contact_field_bend_shape(layout, pair, time, tet, matrix);
   contact_shape_overlap(shape, time, tet, &volume, gradient);
   for (int i = 0; i < 12; i++) {
     double sum = 0;

@@ -257,8 +257,7 @@ void contact_ball_overlap(const double tet[12], const double centre[3], double r
 }
 
 void contact_ball_press(const double tet[12], const double centre[3], double radius, double rest_volume,
-                        double *volume, double *energy, double gradient[12], double hessian[144],
-                        bool is_full) {
+                        double *volume, double *energy, double gradient[12], double hessian[144]) {
   Question question = {centre, radius, rest_volume};
   *volume = *energy = 0;
   memset(gradient, 0, 12 * sizeof *gradient);
@@ -271,7 +270,7 @@ void contact_ball_press(const double tet[12], const double centre[3], double rad
   double bound = rest_volume / whole / radius * *volume; // with it no eigenvalue is negative but by rounding
   for (int r = 0; r < 12; r++) hessian[13 * r] += bound;
   contact_definite_mend(hessian);
-  for (int r = 0; r < 12 && is_full; r++) hessian[13 * r] -= bound;
+  for (int r = 0; r < 12; r++) hessian[13 * r] -= bound;
 }
 
 // The square of the distance of the origin from the segment a b.

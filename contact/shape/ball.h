@@ -38,12 +38,11 @@ void contact_ball_overlap(const double tet[12], const double centre[3], double r
 // The overlap V [m³], and of the potential `field` (contact/pressure/field.h) with c = 1 Pa/m the energy of a
 // tetrahedron of that rest volume [m⁴], its gradient [m³] and, where not NULL, the Hessian [m²]. That
 // is made of central differences of the gradient, symmetrised: right to about 1e-8 of its largest entry,
-// except where the sphere touches an edge or a vertex. Its negative part is −s/R ∫ |δu|² ≥ −s/R V Σ |δu_v|²;
-// not full: as much is added. Negative eigenvalues by rounding, of flat tetrahedra, are removed
+// except where the sphere touches an edge or a vertex. Its negative part is −s/R ∫ |δu|² ≥ −s/R V Σ |δu_v|²:
+// while as much is added, negative eigenvalues by rounding, of flat tetrahedra, are removed
 // (contact/shape/definite.h).
 void contact_ball_press(const double tet[12], const double centre[3], double radius, double rest_volume,
-                        double *volume, double *energy, double gradient[12], double hessian[144],
-                        bool is_full);
+                        double *volume, double *energy, double gradient[12], double hessian[144]);
 
 // Distance of the tetrahedron from the sphere: negative once they overlap, −radius if the centre lies inside.
 double contact_ball_separation(const double tet[12], const double centre[3], double radius);

@@ -314,7 +314,7 @@ static void add_squares(const Polygon *polygon, Vec3 n, double factor, double he
 
 // V and ∫ β_a of a piece; its part of the Hessian. A ridge is in two pieces: half of it in each.
 static double measure_piece(const Piece *piece, const Vec3 x[4], bool is_mirrored, double scale,
-                            double first[4], double hessian[144], bool is_full) {
+                            double first[4], double hessian[144]) {
   Polygon polygon;
   Corner o;
   bool has_origin = false;
@@ -333,15 +333,14 @@ static double measure_piece(const Piece *piece, const Vec3 x[4], bool is_mirrore
     if (polygon.count < 3) continue;
     if (!has_origin) o = polygon.corners[0], has_origin = true;
     add_pyramid(&polygon, normal, &o, true, &volume, first);
-    if (hessian && (is_full || !(piece->ridges[i] > 0)))
+    if (hessian)
       add_squares(&polygon, normal, piece->ridges[i] > 0 ? -scale * piece->ridges[i] / 2 : scale, hessian);
   }
   return volume;
 }
 
 void contact_convex_press(const ContactConvex *convex, const double tet[12], double rest_volume,
-                          double *volume, double *energy, double gradient[12], double hessian[144],
-                          bool is_full) {
+                          double *volume, double *energy, double gradient[12], double hessian[144]) {
   Vec3 x[4];
   Piece piece;
   double depths[CONTACT_CONVEX_PLANES][4];
@@ -362,7 +361,7 @@ void contact_convex_press(const ContactConvex *convex, const double tet[12], dou
   for (int k = 0; k < convex->plane_count; k++) {
     double first[4] = {0};
     if (!make_piece(&piece, convex, k, depths)) continue;
-    *volume += measure_piece(&piece, x, det < 0, scale, first, hessian, is_full);
+    *volume += measure_piece(&piece, x, det < 0, scale, first, hessian);
     for (int a = 0; a < 4; a++) {
       *energy += scale * first[a] * depths[k][a];
       vec3_accumulate(gradient + 3 * a, vec3_scale(-scale * first[a], convex->normals[k]));

@@ -54,12 +54,9 @@ void contact_convex_overlap(const ContactConvex *convex, const double tet[12], d
 // halfway to another plane j,
 //
 //   U = s Σ_k Σ_a m_a d_k(x_a),   ∂U/∂x_a = −s Σ_k m_a n_k,
-//   δ²U = s Σ_k ∫_Q_k (δu·n_k)² dA − s Σ_kj ∫_Q_kj |n_j − n_k| (δu·m)² dA,   m = (n_j − n_k)/|n_j − n_k|,
-//
-// the second sum only if `is_full`.
+//   δ²U = s Σ_k ∫_Q_k (δu·n_k)² dA − s Σ_kj ∫_Q_kj |n_j − n_k| (δu·m)² dA,   m = (n_j − n_k)/|n_j − n_k|.
 void contact_convex_press(const ContactConvex *convex, const double tet[12], double rest_volume,
-                          double *volume, double *energy, double gradient[12], double hessian[144],
-                          bool is_full);
+                          double *volume, double *energy, double gradient[12], double hessian[144]);
 
 // How far apart the two are along the best of their separating axes (overlap/separation.h): at most
 // their distance, negative once they overlap. It ends early with a lower bound that is > enough.

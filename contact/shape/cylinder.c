@@ -393,8 +393,7 @@ static void find_gradient(const void *self, const double tet[12], double gradien
 }
 
 void contact_cylinder_press(const ContactCylinder *cylinder, const double tet[12], double rest_volume,
-                            double *volume, double *energy, double gradient[12], double hessian[144],
-                            bool is_full) {
+                            double *volume, double *energy, double gradient[12], double hessian[144]) {
   *volume = *energy = 0;
   memset(gradient, 0, 12 * sizeof *gradient);
   if (hessian) memset(hessian, 0, 144 * sizeof *hessian);
@@ -402,10 +401,6 @@ void contact_cylinder_press(const ContactCylinder *cylinder, const double tet[12
   *energy = press_with_gradient(cylinder, tet, rest_volume, volume, gradient);
   if (!hessian) return;
   contact_definite_differentiate(find_gradient, &(Question){cylinder, rest_volume}, tet, hessian);
-  double det = vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9));
-  double bound = det == 0 ? 0 : 6 * rest_volume / fabs(det) / cylinder->round * *volume;
-  for (int r = 0; r < 12 && !is_full; r++) hessian[13 * r] += bound;
-  if (!is_full) contact_definite_mend(hessian);
 }
 
 // The square of the distance of the axis from an edge, as seen along z.

@@ -33,11 +33,9 @@ void contact_cylinder_overlap(const ContactCylinder *cylinder, const double tet[
 
 // Of the potential `field` (contact/pressure/field.h) with c = 1 Pa/m: V [m³], the energy of a tetrahedron of
 // that rest volume [m⁴], its gradient s ∫ λ_a ∇φ [m³] and, where not NULL, the Hessian [m²], of central
-// differences as in contact/shape/ball.h. Not full: its part by the side's curvature is left out, and
-// negative eigenvalues are removed.
+// differences as in contact/shape/ball.h.
 void contact_cylinder_press(const ContactCylinder *cylinder, const double tet[12], double rest_volume,
-                            double *volume, double *energy, double gradient[12], double hessian[144],
-                            bool is_full);
+                            double *volume, double *energy, double gradient[12], double hessian[144]);
 
 // The less of both depths; negative outside.
 double contact_cylinder_depth(const ContactCylinder *cylinder, Vec3 x);

@@ -201,24 +201,23 @@ ContactShape contact_shape_shrink(const ContactShape *shape, double depth, struc
 }
 
 void contact_shape_press(const ContactShape *shape, double time, const double tet[12], double rest_volume,
-                         double *volume, double *energy, double gradient[12], double hessian[144],
-                         bool is_full) {
+                         double *volume, double *energy, double gradient[12], double hessian[144]) {
   double point[3], own[12];
   if (has_frame(shape)) {
     Pose pose = pose_of(shape, time);
     ContactCylinder cylinder = cylinder_of(shape);
     to_own_frame(&pose, tet, own);
     if (shape->kind == CONTACT_SHAPE_CONVEX)
-      contact_convex_press(shape->convex, own, rest_volume, volume, energy, gradient, hessian, is_full);
+      contact_convex_press(shape->convex, own, rest_volume, volume, energy, gradient, hessian);
     else
-      contact_cylinder_press(&cylinder, own, rest_volume, volume, energy, gradient, hessian, is_full);
+      contact_cylinder_press(&cylinder, own, rest_volume, volume, energy, gradient, hessian);
     if (*volume > 0) turn_gradient(&pose, gradient);
     if (*volume > 0 && hessian) turn_hessian(&pose, hessian);
     return;
   }
   vec3_store(point, contact_shape_point(shape, time));
   if (shape->kind == CONTACT_SHAPE_BALL)
-    contact_ball_press(tet, point, shape->radius, rest_volume, volume, energy, gradient, hessian, is_full);
+    contact_ball_press(tet, point, shape->radius, rest_volume, volume, energy, gradient, hessian);
   else
     contact_halfspace_press(tet, point, shape->normal, rest_volume, volume, energy, gradient, hessian);
 }

@@ -280,8 +280,6 @@ static Status check_contact(const FemModel *model) {
   if (!contact->is_on) return STATUS_OK;
   if (contact->potential != CONTACT_POTENTIAL_FIELD)
     return status_fail(STATUS_INPUT, "contact.potential: gradients need field");
-  if (!contact->use_full_hessian)
-    return status_fail(STATUS_INPUT, "contact.hessian: gradients need the full one");
   return fem_learned_check(model);
 }
 

@@ -205,7 +205,6 @@ typedef struct FemContactDef {
   int smooth; // how often the edges of curved surfaces are halved for contact; 0: facets as they are; −1:
               // chosen
   double crease; // edges between faces that make more stay sharp [°]
-  bool use_full_hessian;
   FemFrictionDef friction;              // between any two; coefficient 0: none
   double viscosity;                     // η [Pa s]; 0: none
   bool rest_is_on;                      // bodies at rest are left out

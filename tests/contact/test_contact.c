@@ -151,23 +151,6 @@ START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
 }
 END_TEST
 
-START_TEST(without_the_geometric_part_stiffness_is_not_negative) {
-  Fixture *f = pressed_blocks(false);
-  ContactSystemDef def = blocks_def(&f->blocks, f->rest, &f->model);
-  def.potential = (ContactPotential)_i;
-  def.use_full_hessian = false;
-  start(f, &def);
-  for (uint64_t k = 0; k < 20; k++) {
-    double *d = random_motion(f, k, true);
-    Product product = multiply(f, d);
-    ck_assert_int_gt(product.dense_count, 0);
-    ck_assert(product_dot(product.y, d, 3 * f->blocks.vertex_count) > 0);
-    free(d), free(product.y);
-  }
-  destroy(f);
-}
-END_TEST
-
 START_TEST(two_bodies_keep_momentum_and_angular_momentum) {
   Fixture *f = fixture_of(_i);
   double *force = forces_at(f, f->blocks.x), sum[3] = {0}, torque[3] = {0}, on_a[3] = {0}, size = 0;
@@ -481,7 +464,6 @@ int main(void) {
   TCase *cases = tcase_create("contact");
   tcase_add_loop_test(cases, forces_are_minus_the_gradient_of_the_energy, 0, 2 * all);
   tcase_add_loop_test(cases, stiffness_is_minus_the_derivative_of_the_forces, 0, 2);
-  tcase_add_loop_test(cases, without_the_geometric_part_stiffness_is_not_negative, 0, all);
   tcase_add_loop_test(cases, two_bodies_keep_momentum_and_angular_momentum, 0, 2 * all);
   tcase_add_test(cases, covered_volumes_sum_to_the_overlap);
   tcase_add_loop_test(cases, a_tip_in_a_halfspace_is_as_by_hand, 0, all);

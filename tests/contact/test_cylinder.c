@@ -24,7 +24,7 @@ static void random_tet(Random *random, double size, double reach, double tet[12]
 
 static double press(const ContactCylinder *cylinder, const double tet[12], double rest, double gradient[12]) {
   double volume, energy, own[12];
-  contact_cylinder_press(cylinder, tet, rest, &volume, &energy, gradient ? gradient : own, NULL, true);
+  contact_cylinder_press(cylinder, tet, rest, &volume, &energy, gradient ? gradient : own, NULL);
   return energy;
 }
 
@@ -156,7 +156,7 @@ START_TEST(the_matrix_is_the_gradient_of_the_force) {
     double tet[12], gradient[12], hessian[144], high[12], low[12], volume, energy, h = 1e-6;
     random_tet(&random, 0.4, 0.5, tet);
     if (whole_volume(tet) < 0.005) continue;
-    contact_cylinder_press(&CYLINDERS[_i], tet, 0.1, &volume, &energy, gradient, hessian, true);
+    contact_cylinder_press(&CYLINDERS[_i], tet, 0.1, &volume, &energy, gradient, hessian);
     met += volume > 0;
     for (int k = 0; k < 12; k++) {
       double kept = tet[k];

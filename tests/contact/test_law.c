@@ -115,7 +115,7 @@ START_TEST(forces_are_minus_the_gradient_of_the_energy) {
     Scene scene;
     press_on(&scene, kind);
     scene.law = &law;
-    start(&scene, "clip", true);
+    start(&scene, "clip");
     int n = 3 * scene.blocks.vertex_count;
     double *x = blocks_copy(&scene.blocks), *force = forces_at(&scene, scene.blocks.x);
     double size = sqrt(product_dot(force, force, n));
@@ -140,7 +140,7 @@ START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
     Scene scene;
     press_on(&scene, kind);
     scene.law = &law;
-    start(&scene, "clip", true);
+    start(&scene, "clip");
     int n = 3 * scene.blocks.vertex_count;
     double *x = blocks_copy(&scene.blocks), h = 1e-6, worst = 0;
     for (uint64_t k = 0; k < 5; k++) {
@@ -177,7 +177,7 @@ START_TEST(energy_force_and_stiffness_are_a_taylor_series) {
   Scene scene;
   press_on(&scene, kind);
   scene.law = &law;
-  start(&scene, "clip", true);
+  start(&scene, "clip");
   int n = 3 * scene.blocks.vertex_count;
   double *x = blocks_copy(&scene.blocks), *d = random_motion(&scene, 3, true), left[2];
   double *force = forces_at(&scene, scene.blocks.x), energy = energy_at(&scene, scene.blocks.x);
@@ -201,7 +201,7 @@ START_TEST(every_pair_balances) {
   Scene scene;
   press_on(&scene, ON_BODY);
   scene.law = &law;
-  start(&scene, _i == ROWS ? "tpn-scene" : "clip", true);
+  start(&scene, _i == ROWS ? "tpn-scene" : "clip");
   const ContactEvaluation *evaluation = evaluated_at(scene.system, 0, scene.blocks.x);
   const ContactLayout *layout = contact_system_layout(scene.system);
   double worst = 0, largest = 0;
@@ -250,7 +250,7 @@ static double flat_pressure(const ContactLaw *law, double depth, const char *mod
   scene.shape = (ContactShape){.name = "floor", .normal = {0, 0, 1}};
   unsigned char *inner = mark_sides(&scene, 4);
   scene.inner = inner;
-  start(&scene, model ? model : "clip", true);
+  start(&scene, model ? model : "clip");
   double *force = forces_at(&scene, scene.blocks.x), total = 0;
   const ContactBody *upper = &scene.blocks.bodies[scene.blocks.body_count - 1];
   for (int v = upper->vertex_begin; v < upper->vertex_end; v++) total += force[3 * v + 2];

@@ -313,7 +313,6 @@ static void press_domes(Scene *scene, const char *model, int level) {
                           .crease = CREASE,
                           .potential = CONTACT_POTENTIAL_FIELD,
                           .stiffness = 1000,
-                          .use_full_hessian = true,
                           .model = &scene->model};
   ck_assert_ok(contact_system_create(&scene->system, &def));
   ck_assert_ok(contact_system_update(scene->system, 0, scene->x, scene->still, 0.01, NULL));

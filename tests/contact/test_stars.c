@@ -77,7 +77,6 @@ static void start(Scene *scene, const char *model, bool has_floor) {
                           .shape_count = has_floor,
                           .potential = CONTACT_POTENTIAL_FIELD,
                           .stiffness = STIFFNESS,
-                          .use_full_hessian = true,
                           .model = &scene->model};
   ck_assert_ok(contact_system_create(&scene->system, &def));
 }

@@ -215,8 +215,6 @@ TABLES = {
     "examples": Runs(["example"], [([name], example(name), (), ()) for name in examples()], {**COST, **HEALTH}, 2),
     "potentials": Runs(["scene", "potential"], [([name, potential], example(name), (f"contact.potential={potential}", "contact.friction=0"), ()) for name in (*MOVING, *STATIC)
                                                 for potential in ("field", "nodal")], COST, 3),
-    "hessian": Runs(["scene", "`contact.hessian`"], [([name, hessian], example(name), (f"contact.hessian={hessian}",), ()) for name in (*MOVING, *STATIC)
-                                                     for hessian in ("full", "gauss_newton")], COST, 3),
     "damped": Runs(["15_sleepers"], [([label], example("15_sleepers"), sets, ()) for label, sets in
                                      (("as it is", ()), *((f"`{one}`", (one,)) for one in ("contact.stiffness=5e8", "contact.stiffness=1e9", "contact.stiffness=2e9", "effects.damping=1e-4")))],
                    {"deepest": value("deepest_overlap_max"), "largest force [N]": value("contact_force_max", 3), **COST}, 0.5),

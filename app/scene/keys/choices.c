@@ -58,13 +58,6 @@ const SceneChoices app_scene_choices_overlaps = {
 
 // Names of numbers and switches in a scene's definition.
 
-// The number is FemContactDef.use_full_hessian.
-const SceneChoices app_scene_choices_hessians = {
-    .listed = (const SceneChoice[]){
-        {"gauss_newton", "products of the first derivatives only: cheaper, more iterations"},
-        {"full", "the second derivatives of the overlap volumes as well, where the model has them"},
-        {0}}};
-
 const SceneChoices app_scene_choices_elements = {
     .listed = (const SceneChoice[]){
         {"linear", "constant strain; too stiff in bending, and above about ν = 0.45 altogether"},

@@ -197,8 +197,6 @@ static const SceneKey contact_keys[] = {
              "on a smooth surface through the vertices; needs the potential `field`"},
     {"crease", SCENE_NUMBER, AT(FemContactDef, crease), .unit = "°", .range = "(0, 90]", .fallback = "30",
      .help = "`smooth`: edges between faces that make a larger angle stay sharp"},
-    {"hessian", SCENE_CHOICE, AT(FemContactDef, use_full_hessian), .fallback = "full",
-     .choices = &app_scene_choices_hessians, .help = "derivatives of the contact force for Newton's method"},
     {"friction", SCENE_SECTION, AT(FemContactDef, friction), .section = &friction,
      .absent_help = "no friction", .help = "contacts resist sliding; a number alone is its coefficient"},
     {"pairs", SCENE_LIST, AT(FemContactDef, pairs), .section = &pair,

@@ -22,6 +22,7 @@ static const struct {
     {"contact.potential", "pair", POTENTIAL},
     {"contact.potential", "linear", POTENTIAL},
     {"contact.potential", "body", POTENTIAL},
+    {"contact.hessian", NULL, "remove it: the matrix has all second derivatives, as with `full`"},
     {"contact.net.weights", NULL, WEIGHTS},
     {"contact.net", "*", WEIGHTS},
     {"contact.friction.law", NULL,

@@ -152,7 +152,6 @@ static Status build(Contact *contact) {
                              .pair_stiffness = choice.stiffness,
                              .pair_laws = laws,
                              .margin = def->margin,
-                             .use_full_hessian = def->use_full_hessian,
                              .model = &contact->overlap};
   status = contact_system_create(&contact->system, &system);
   fem_compliance_destroy(&choice);

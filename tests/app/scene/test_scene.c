@@ -209,7 +209,7 @@ static void check_settings(const FemSceneDef *scene) {
   ck_assert_double_eq(scene->initial_step, 1e-6);
   ck_assert_double_eq(scene->min_step, 1e-9);
   ck_assert_int_eq(scene->max_order, 1);
-  ck_assert(scene->contact.is_on && !scene->contact.use_full_hessian);
+  ck_assert(scene->contact.is_on);
   ck_assert_double_eq(scene->contact.stiffness, 3e6);
   ck_assert_int_eq(scene->contact.potential, CONTACT_POTENTIAL_FIELD);
   ck_assert_str_eq(scene->contact.overlap, "exact");
@@ -325,7 +325,7 @@ START_TEST(an_empty_contact_section_turns_contact_on) {
                      "bodies: [{name: a, mesh: a.msh, material: {young: 1, poisson: 0, density: 1}}]\n";
   FemSceneDef scene;
   ck_assert_ok(app_scene_read_text("s.yaml", text, strlen(text), &scene));
-  ck_assert(scene.contact.is_on && scene.contact.use_full_hessian);
+  ck_assert(scene.contact.is_on);
   ck_assert_double_eq(scene.contact.stiffness, 0);
   ck_assert_int_eq(scene.contact.potential, CONTACT_POTENTIAL_FIELD);
   ck_assert_str_eq(scene.contact.overlap, "clip");

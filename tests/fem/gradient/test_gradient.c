@@ -401,7 +401,6 @@ START_TEST(what_has_no_gradient_is_refused_by_name) {
   refuse(STATIC, NU, "", "stiffness: 1e6, overlap: tpn", YOUNG, "'tpn' has no derivatives of its centroid");
   refuse(STATIC, NU, "", "overlap: geo, law: 1e6*d", YOUNG, "pressure law");
   refuse(STATIC, NU, "", "stiffness: 1e6, potential: nodal", YOUNG, "gradients need field");
-  refuse(STATIC, NU, "", "stiffness: 1e6, hessian: gauss_newton", YOUNG, "contact.hessian");
 }
 END_TEST
 
