@@ -9,6 +9,8 @@
 #include "contact/friction/deformation.h"
 #include "contact/limits.h"
 
+// A vertex counts as sliding from this share of its limit.
+static const double SLIDES_FROM = 0.98;
 // The stretch that μ_s − μ is of the spring, so often: no less is the way over which that is lost. At 1 the
 // force would jump.
 static const double WEAKENS_OVER = 2;
@@ -231,7 +233,6 @@ static double return_radially(ContactStick *stick, const ContactStickHistory *hi
   if (node->excess > 0) weaken(node, entry ? entry->weak : 0, stick->laws[node->interface].length, length);
   node->slips = k * length > node->limit;
   node->advances = vec3_dot(way, trial) > 0;
-  node->slides = node->slips || (entry && entry->slides == 1 && node->advances);
   double kept_share = node->slips ? node->limit / (k * length) : 1;
   Vec3 stretch = vec3_scale(kept_share, trial);
   vec3_store(node->normal, normal);
@@ -290,13 +291,20 @@ static void share_forces(ContactStick *stick, const ContactStickHistory *history
   }
 }
 
+// Where the press grows a little, what slides sticks for a step at nearly all of its limit: that counts as
+// sliding.
+bool contact_stick_slides(const ContactStickNode *node) {
+  return vec3_length(vec3_at(node->force)) >= SLIDES_FROM * node->limit;
+}
+
 // What sticks and what slides, k_a / c_t of the vertices.
 static void share_areas(ContactStick *stick, const ContactStickHistory *history, const bool *is_resting) {
   for (int i = 0; i < stick->interface_count; i++)
     for (int k = 0; k < 2; k++) stick->areas[i][k] = is_resting && is_resting[i] ? history->areas[i][k] : 0;
   for (int n = 0; n < stick->node_count; n++) {
     const ContactStickNode *node = &stick->nodes[n];
-    stick->areas[node->interface][node->slides] += node->stiffness / stick->laws[node->interface].stiffness;
+    stick->areas[node->interface][contact_stick_slides(node)] +=
+        node->stiffness / stick->laws[node->interface].stiffness;
   }
 }
 
@@ -441,15 +449,21 @@ static bool keep_entry(const ContactStickEntry *entry, bool is_resting, ContactS
   return kept->work > 0;
 }
 
+// What slides may stick for a step (contact_stick_slides): only what does not go on, or is far below its
+// limit, has come to rest.
+static bool sticks_again(const ContactStickNode *node) {
+  return !node->slips && (!node->advances || !contact_stick_slides(node));
+}
+
 static ContactStickEntry entry_of(const ContactStickNode *node) {
   Vec3 stretch = vec3_at(node->stretch);
-  double regained = node->slides ? 0 : node->weak;
+  double regained = sticks_again(node) ? node->weak : 0;
   ContactStickEntry entry = {.interface = node->interface,
                              .vertex = node->vertex,
                              .energy = 0.5 * node->stiffness * vec3_dot(stretch, stretch),
                              .limit = node->limit + node->excess * regained,
                              .weak = node->weak - regained,
-                             .slides = node->slips ? 1 : 0.5 * node->slides,
+                             .slides = contact_stick_slides(node),
                              .way = node->way,
                              .work = node->work};
   vec3_store(entry.stretch, contact_deformation_divide(node->deformation, stretch));

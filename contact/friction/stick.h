@@ -63,8 +63,7 @@ typedef struct ContactStickLaw {
   double weight[2]; // of each side as slave: 1 and 0, 0 and 1, or ½ and ½
 } ContactStickLaw;
 
-// A slave's vertex at the positions of the last evaluation. Where its press grows a little, what slides
-// sticks for a step: that counts as sliding, and as rest only if it sticks for another one, or turns back.
+// A slave's vertex at the positions of the last evaluation.
 typedef struct ContactStickNode {
   int interface, vertex;
   int begin, end;        // of its touches
@@ -82,9 +81,8 @@ typedef struct ContactStickNode {
   double slid[3];        // F_a G_a, since it was last touched [m]
   double way;            // Σ |s_trial − s| so far [m]
   double work;           // dissipated at it so far [J]
-  bool slips;            // its stretch is cut off: k |s_trial| > L
-  bool advances;         // the way since the last accepted state goes along s_trial
-  bool slides;           // it slips, or did up to the last accepted state and advances
+  bool slips;
+  bool advances; // the way since the last accepted state goes along s_trial
 } ContactStickNode;
 
 // A corner of a pair that is a slave: which node, with which share of it.
@@ -142,6 +140,9 @@ Status contact_stick_reserve(ContactStick *stick, int pair_count);
 // forces and areas.
 Status contact_stick_eval(ContactStick *stick, const ContactStickLast *last, int pair_count,
                           const double *positions, const bool *is_resting);
+
+// Whether it counts as sliding, not sticking: its pull is 0.98 of its limit or more.
+bool contact_stick_slides(const ContactStickNode *node);
 
 // Of the last evaluation.
 // By the vertices as given: (vertex_count, 3) without stars.

@@ -22,7 +22,7 @@ typedef struct ContactStickEntry {
   double energy;            // ½ k_a s² as it was stored [J]
   double limit;             // μ N_a then, or what is left of μ_s N_a [N]
   double weak;              // w: the share of μ_s − μ that it has lost since it stuck
-  double slides;            // 1: it slips; ½: it slides, though it sticks in this step; 0: neither, or has left
+  double slides;            // 1: at its limit; 0: it sticks, or has left
   double slip[3];           // slid since it was last touched, in the rest frame [m]
   double slid[3];           // the same in space, as it lay then [m]
   double way;               // Σ of the lengths slid so far [m]

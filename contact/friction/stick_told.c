@@ -50,7 +50,7 @@ static void add_slip(const ContactStick *stick, const double *depths, const Cont
 
 static void tell_node(const ContactStick *stick, const double *depths, const ContactStickNode *node,
                       const ContactStickTold *told) {
-  add_weight(stick, told, node->vertex, node->weight, node->slides);
+  add_weight(stick, told, node->vertex, node->weight, contact_stick_slides(node));
   add_work(stick, told, node->vertex, node->work);
   add_slip(stick, depths, told, node->vertex, node->slid, node->way);
 }
@@ -63,7 +63,7 @@ static double share_that_slides(const ContactStick *stick, int k) {
     if (touch->node < 0) continue;
     const ContactStickNode *node = &stick->nodes[touch->node];
     whole += touch->share * node->weight;
-    slides += node->slides ? touch->share * node->weight : 0;
+    slides += contact_stick_slides(node) ? touch->share * node->weight : 0;
   }
   return whole > 0 ? slides / whole : 0;
 }
@@ -84,7 +84,7 @@ static void tell_entry(const ContactStick *stick, const double *depths, const Co
   int vertex = (int)entry->vertex;
   add_work(stick, told, vertex, entry->work + (is_resting ? 0 : entry->energy));
   add_slip(stick, depths, told, vertex, is_resting ? entry->slid : NULL, entry->way);
-  if (is_resting) add_weight(stick, told, vertex, entry->limit, entry->slides > 0);
+  if (is_resting) add_weight(stick, told, vertex, entry->limit, entry->slides);
 }
 
 void contact_stick_tell(const ContactStick *stick, const ContactStickHistory *history, const bool *is_resting,

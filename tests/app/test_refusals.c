@@ -136,7 +136,7 @@ START_TEST(a_seed_that_verdict_json_would_round_is_refused) {
 }
 END_TEST
 
-START_TEST(a_model_that_no_list_can_name_is_refused) {
+START_TEST(models_in_one_word_are_refused) {
   ck_assert_refused(64, "$tetlap verdict clip,geo --quick -o out",
                     "name several models as words of their own");
   ck_assert_int_ne(access("out", F_OK), 0);
@@ -154,6 +154,6 @@ int main(void) {
   tcase_add_test(cases, stress_names_the_model_that_is_none);
   tcase_add_test(cases, a_file_of_pytorch_is_refused_with_what_to_do);
   tcase_add_test(cases, a_seed_that_verdict_json_would_round_is_refused);
-  tcase_add_test(cases, a_model_that_no_list_can_name_is_refused);
+  tcase_add_test(cases, models_in_one_word_are_refused);
   return suite_run("refusals", cases, 120);
 }

@@ -276,26 +276,6 @@ START_TEST(what_sticks_again_holds_as_before) {
 }
 END_TEST
 
-// Where its press grows it sticks for a step, and still slides if it goes on; in the second step it has come
-// to rest.
-START_TEST(what_slides_may_stick_for_one_step) {
-  for (int i = 0; i < 2; i++) {
-    Fixture *f = start_at_rest(0.8, 0);
-    double step = 1e-2 * PRESS / (STIFFNESS * AREA), way = i == 0 ? 1e-3 * step : -1e-3 * step, work = 0;
-    drag(f, step, 400, &work);
-    f->force[2] *= 1.1;
-    drag(f, way, 1, &work);
-    ck_assert_int_eq(f->stick.slip_count, 0);
-    ck_assert_near(f->stick.areas[0][i == 0], AREA, 1e-12);
-    ck_assert_near(history_of(f).entries[0].weak, i == 0, 0);
-    drag(f, way, 1, &work);
-    ck_assert_near(f->stick.areas[0][0], AREA, 1e-12);
-    ck_assert_near(history_of(f).entries[0].weak, 0, 0);
-    finish(f);
-  }
-}
-END_TEST
-
 START_TEST(friction_at_rest_that_is_no_more_changes_nothing) {
   Fixture *one = start_at_rest(0, 0), *other = start_at_rest(MU, 1e-3);
   double work[2] = {0, 0};
@@ -652,7 +632,6 @@ int main(void) {
   tcase_add_test(test_case, what_breaks_away_slides_at_less);
   tcase_add_test(test_case, a_long_step_dissipates_as_many_short_ones);
   tcase_add_test(test_case, what_sticks_again_holds_as_before);
-  tcase_add_test(test_case, what_slides_may_stick_for_one_step);
   tcase_add_test(test_case, friction_at_rest_that_is_no_more_changes_nothing);
   tcase_add_test(test_case, forces_and_torques_of_a_pair_balance);
   tcase_add_test(test_case, a_common_rotation_carries_forces_along_however_large_the_step);

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/random.h>
+#include <unistd.h>
 
 #include "app/cli/parse.h"
 #include "app/command/commands.h"
@@ -107,6 +108,9 @@ static Status check_digest(const Record *before, const AppVerdictPlan *plan, con
 // A model that cannot be opened is told before anything is asked of others.
 static Status try_model(const char *source) {
   OverlapModel model;
+  if (strchr(source, ',') && !strchr(source, ':') && access(source, F_OK)) // neither a command nor a file
+    return status_fail(STATUS_USAGE,
+                       "there is no overlap model '%s': name several models as words of their own", source);
   TRY(overlap_model_create(&model, source));
   overlap_model_destroy(&model);
   return STATUS_OK;
