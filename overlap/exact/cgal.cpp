@@ -221,5 +221,7 @@ extern "C" const OverlapOps overlap_cgal_ops = {
     false,              // lacks_scale
     nullptr,            // weights
     nullptr,            // eval_pull
+    nullptr,            // eval_slopes
+    nullptr,            // training
     nullptr,            // wants_origins
 };
