@@ -28,7 +28,7 @@ static const Variant variants[] = {
     {.name = "exact", .overrides = {"contact.overlap=exact"}},
     {.name = "learned, with its own centroid", .overrides = {"contact.overlap=geo"}},
     {.name = "nodal", .overrides = {"contact={potential: nodal}"}},
-    {.name = "viscosity, full Hessian", .overrides = {"contact={viscosity: 1e-4, hessian: full}"}},
+    {.name = "viscosity", .overrides = {"contact={viscosity: 1e-4}"}},
     {.name = "learned", .overrides = {"contact.overlap=tpn"}},
     {.name = "nodal elements", .overrides = {"bodies.lower.element=nodal", "bodies.upper.element=nodal"}},
     {.name = "quadratic elements",
