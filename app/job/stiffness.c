@@ -3,7 +3,7 @@
 
 #include "base/text.h"
 #include "contact/surface/smooth_points.h"
-#include "fem/model/laws.h"
+#include "fem/model/compliance/laws.h"
 
 static const char *const reasons[] = {
     [FEM_COMPLIANCE_SCENE] = "given by the scene",

@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-#include "fem/model/compliance.h"
+#include "fem/model/compliance/compliance.h"
 
 // "5.2e+07 … 1e+08 Pa/m, by the elements at curved surfaces ('shaft' and 'ring'), …": of all that can meet.
 // With a pressure law it says for what c is left.

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "fem/model/compliance.h"
+#include "fem/model/compliance/compliance.h"
 
 typedef enum Owner { OF_SCENE, OF_MATERIAL, OF_MOTION } Owner;
 

@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "fem/gradient/difference.h"
-#include "fem/model/compliance.h"
+#include "fem/model/compliance/compliance.h"
 
 static Status create_effect(FemEffect *effect, const FemEffectOps *ops, const FemModel *model) {
   effect->ops = ops;

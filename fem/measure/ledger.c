@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "contact/evaluation.h"
 #include "fem/effect/contact/contact.h"
-#include "fem/model/compliance.h"
+#include "fem/model/compliance/compliance.h"
 #include "fem/model/limits.h"
 
 // The system's own: it has another one once it began anew from a checkpoint.

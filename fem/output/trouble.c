@@ -9,7 +9,7 @@
 #include "base/tet.h"
 #include "base/vec3.h"
 #include "fem/mesh/faces.h"
-#include "fem/model/compliance.h"
+#include "fem/model/compliance/compliance.h"
 
 static const double COVERED = 0.999, DEEP = 0.5, PULL = 0.5, FORCE_FLOOR = 1e-3, SLIVER_SHAPE = 1e-3;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/run/run_result.h"
-#include "fem/model/compliance.h"
+#include "fem/model/compliance/compliance.h"
 
 #include <assert.h>
 #include <math.h>

@@ -194,7 +194,7 @@ typedef struct FemContactPairDef {
 typedef struct FemContactDef {
   bool is_on;
   FemScenePlace place;
-  double stiffness;     // κ; 0: chosen (fem/model/compliance.h, or the softest body's E)
+  double stiffness;     // κ; 0: chosen (fem/model/compliance/compliance.h, or the softest body's E)
   FemContactLawDef law; // of the potential `field`, in place of κ
   ContactPotential potential;
   FemContactPairDef *pairs; //                                (pair_count)
@@ -204,7 +204,7 @@ typedef struct FemContactDef {
   double margin; // [m]; 0: chosen
   int smooth; // how often the edges of curved surfaces are halved for contact; 0: facets as they are; −1:
               // chosen
-  double crease; // edges between faces that make more stay sharp [°]
+  double crease;                        // edges between faces that make more stay sharp [°]
   FemFrictionDef friction;              // between any two; coefficient 0: none
   double viscosity;                     // η [Pa s]; 0: none
   bool rest_is_on;                      // bodies at rest are left out

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "app/scene/keys/choices.h"
-#include "fem/model/laws.h"
+#include "fem/model/compliance/laws.h"
 #include "fem/scene/scene.h"
 
 static const char *finish_contact(void *self, const char **key) {

@@ -8,7 +8,7 @@
 #include "fem/effect/contact/contact.h"
 #include "fem/effect/contact/sink.h"
 #include "fem/effect/system.h"
-#include "fem/model/compliance.h"
+#include "fem/model/compliance/compliance.h"
 
 typedef struct Stick {
   const FemModel *model;  // borrowed

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "fem/model/compliance.h"
+#include "fem/model/compliance/compliance.h"
 
 // Of a system that GMRES solves, the share of the right side that may be left.
 static const double RESIDUAL = 1e-11;

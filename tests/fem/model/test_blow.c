@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The energy with which bodies may strike, and the contact stiffness that is chosen for it.
-#include "fem/model/blow.h"
+#include "fem/model/compliance/blow.h"
 
 #include <math.h>
 
 #include "base/memory.h"
-#include "fem/model/compliance.h"
+#include "fem/model/compliance/compliance.h"
 #include "scene.h"
 
 // tests/scenes/cubes.yaml: ten cubes of 0.1 m, E 1e5 Pa, 1 kg, the last one 10 kg; the first 0.01 m above the

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The contact stiffness where surfaces curve, and how often their edges are halved.
-#include "fem/model/compliance.h"
+#include "fem/model/compliance/compliance.h"
 
 #include <math.h>
 #include <stdio.h>
 
-#include "fem/model/patch.h"
+#include "fem/model/compliance/patch.h"
 #include "scene.h"
 
 static void choose(SceneRun *run, const char *name, const char *const *overrides, FemCompliance *choice) {

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "fem/model/compliance.h"
+#include "fem/model/compliance/compliance.h"
 #include "scene.h"
 #include "static_solve.h"
 

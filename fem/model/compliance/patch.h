@@ -7,9 +7,10 @@
 //   a = √(δ/κ),   a³ = 3 F / (4 E* κ),   δ^(5/2) = 15 W √κ / (8 E*)
 //
 // with the pressure 2 E* κ a / π in the middle. δ is how far what is driven moves against the other until the
-// end of a static scene, F the largest sum of loads, or the weight, W the hardest blow (fem/model/blow.h).
-#ifndef TETLAP_FEM_MODEL_PATCH_H
-#define TETLAP_FEM_MODEL_PATCH_H
+// end of a static scene, F the largest sum of loads, or the weight, W the hardest blow
+// (fem/model/compliance/blow.h).
+#ifndef TETLAP_FEM_MODEL_COMPLIANCE_PATCH_H
+#define TETLAP_FEM_MODEL_COMPLIANCE_PATCH_H
 
 #include "fem/model/model.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How large a body is, of any shape and however it is turned.
-#ifndef TETLAP_FEM_MODEL_EXTENT_H
-#define TETLAP_FEM_MODEL_EXTENT_H
+#ifndef TETLAP_FEM_MODEL_COMPLIANCE_EXTENT_H
+#define TETLAP_FEM_MODEL_COMPLIANCE_EXTENT_H
 
 #include "base/vec3.h"
 #include "fem/model/model.h"

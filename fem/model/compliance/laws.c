@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/laws.h"
+#include "fem/model/compliance/laws.h"
 
 #include <math.h>
 
 #include "base/memory.h"
-#include "fem/model/compliance.h"
+#include "fem/model/compliance/compliance.h"
 
 static bool is_given(const FemContactLawDef *def) {
   return def->law.kind != CONTACT_LAW_LINEAR;

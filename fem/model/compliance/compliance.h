@@ -41,8 +41,8 @@
 // contact.smooth is the least level at which the overlap in the middle of the patch is as deep as 2.5
 // sagittas of what is left, h²/(8 R · 4^level); 2 in a hollow, where pressures are low beside E h/R; 1 where
 // a is not known. Quadratic elements have their own curved edges.
-#ifndef TETLAP_FEM_MODEL_COMPLIANCE_H
-#define TETLAP_FEM_MODEL_COMPLIANCE_H
+#ifndef TETLAP_FEM_MODEL_COMPLIANCE_COMPLIANCE_H
+#define TETLAP_FEM_MODEL_COMPLIANCE_COMPLIANCE_H
 
 #include "fem/model/model.h"
 

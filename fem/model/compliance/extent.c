@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/extent.h"
+#include "fem/model/compliance/extent.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/blow.h"
+#include "fem/model/compliance/blow.h"
 
 #include <math.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pressure law of each two that can meet, as the scene says: `contact.law`, or that of the last of
 // `contact.pairs` with these two which gives a law, or a stiffness, with which they are linear.
-#ifndef TETLAP_FEM_MODEL_LAWS_H
-#define TETLAP_FEM_MODEL_LAWS_H
+#ifndef TETLAP_FEM_MODEL_COMPLIANCE_LAWS_H
+#define TETLAP_FEM_MODEL_COMPLIANCE_LAWS_H
 
 #include "contact/pressure/law.h"
 #include "fem/model/model.h"

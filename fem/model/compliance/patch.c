@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/patch.h"
+#include "fem/model/compliance/patch.h"
 
 #include <math.h>
 

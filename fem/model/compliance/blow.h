@@ -6,8 +6,8 @@
 // along gravity, of a ball, a box or a cylinder to its centre; not farther than the time until the end lets
 // it, and not at all while some of its coordinates are prescribed, or while all bodies float: then energies
 // are relative to the centre of mass. A body that another one stops on the way has less.
-#ifndef TETLAP_FEM_MODEL_BLOW_H
-#define TETLAP_FEM_MODEL_BLOW_H
+#ifndef TETLAP_FEM_MODEL_COMPLIANCE_BLOW_H
+#define TETLAP_FEM_MODEL_COMPLIANCE_BLOW_H
 
 #include "fem/model/model.h"
 

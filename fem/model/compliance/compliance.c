@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/compliance.h"
+#include "fem/model/compliance/compliance.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -9,11 +9,11 @@
 #include "base/vec3.h"
 #include "contact/surface/roundness.h"
 #include "contact/surface/smooth_points.h"
-#include "fem/model/blow.h"
-#include "fem/model/leaf.h"
+#include "fem/model/compliance/blow.h"
+#include "fem/model/compliance/leaf.h"
+#include "fem/model/compliance/patch.h"
 #include "fem/model/limits.h"
 #include "fem/model/parts.h"
-#include "fem/model/patch.h"
 
 // The deformation of the interface over that of the bodies, and its depth over the height in an impact, at
 // most.

@@ -17,10 +17,10 @@
 // times as long as thick. It does not hold for what is squeezed: where another body or an obstacle is moved,
 // where what is fixed or driven of one of the two reaches along more than half of it, and where it lets the
 // largest sum of loads press them into each other by a twentieth of their thickness.
-#ifndef TETLAP_FEM_MODEL_LEAF_H
-#define TETLAP_FEM_MODEL_LEAF_H
+#ifndef TETLAP_FEM_MODEL_COMPLIANCE_LEAF_H
+#define TETLAP_FEM_MODEL_COMPLIANCE_LEAF_H
 
-#include "fem/model/extent.h"
+#include "fem/model/compliance/extent.h"
 
 // The largest c of these two [Pa/m]; INFINITY: there is no such bound.
 double fem_leaf_stiffness(const FemModel *model, const int bodies[2], const FemExtent extents[2]);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/leaf.h"
+#include "fem/model/compliance/leaf.h"
 
 #include <math.h>
 
+#include "fem/model/compliance/patch.h"
 #include "fem/model/parts.h"
-#include "fem/model/patch.h"
 
 // Length over thickness of a leaf, at least; λ³/(L h²); the depth under the loads over the thickness, and the
 // length of what holds a leaf over its own, at most.
