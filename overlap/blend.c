@@ -80,6 +80,7 @@ static void change_step(const Arms *arms, double volume, const double gradient[2
 static void go_on(const Ends ends[3], const Arms *arms, double changes[SIZE][3], Point *point) {
   for (int c = 0; c < 3; c++) {
     double to = point->at[c] + arms->step[c];
+    if (ends[c].low > ends[c].high || to != to) continue; // boxes that are apart; NaN: it stays
     bool is_low = to <= ends[c].low, is_high = !is_low && to >= ends[c].high;
     point->at[c] = is_low ? ends[c].low : is_high ? ends[c].high : to;
     for (int i = 0; i < SIZE; i++)

@@ -26,7 +26,9 @@ static Status add(Other *other, const char *key, double value) {
   if (place >= APP_MAX_OVERRIDES)
     return status_fail(STATUS_INPUT, "--check changes parameters by --set, of which there are at most %d",
                        APP_MAX_OVERRIDES);
-  snprintf(text, TEXT_SIZE, "%s=%.17g", key, value);
+  if (snprintf(text, TEXT_SIZE, "%s=%.17g", key, value) >= TEXT_SIZE)
+    return status_fail(STATUS_INPUT, "--check takes keys of fewer than %d characters, not %s", TEXT_SIZE - 25,
+                       key);
   other->job.overrides[other->job.override_count++] = text;
   return STATUS_OK;
 }
@@ -46,9 +48,12 @@ static Status halve(AppGradientCheck *check, Other *other, const FemModel *model
                     const AppGradientWords *words, const AppGradientAnswer *answer) {
   const FemSceneDef *scene = model->scene;
   AppGradientAnswer half;
+  AppGradientWords keys = *words;
+  keys.by_weights = false;
   TRY(scene->is_static ? add(other, "output.frames", 2 * scene->frames)
                        : add(other, "time.tolerance", scene->tolerance / OF_HALF));
-  Status status = status_prefix(answer_other(other, words, &half), "--check, with half the steps");
+  if (!scene->is_static && scene->max_step > 0) TRY(add(other, "time.max_step", scene->max_step / 2));
+  Status status = status_prefix(answer_other(other, &keys, &half), "--check, with half the steps");
   for (int g = 0; g < words->of_count && !status; g++)
     for (int p = 0; p < words->by_count; p++) {
       int place = g * words->by_count + p;
@@ -80,6 +85,12 @@ static Direction draw_direction(const FemModel *model, const AppGradientWords *w
   return direction;
 }
 
+static bool leads_away(const Direction *direction, const AppGradientWords *words) {
+  for (int p = 0; p < words->by_count; p++)
+    if (direction->ways[p] != 0) return true;
+  return false;
+}
+
 static Status add_along(AppGradientCheck *check, Other *other, const Direction *direction, double side,
                         const FemModel *model, const AppGradientWords *words,
                         const AppGradientAnswer *answer) {
@@ -91,6 +102,7 @@ static Status add_along(AppGradientCheck *check, Other *other, const Direction *
       TRY(add(other, words->by[p], value + side * direction->step * direction->ways[p]));
   }
   values.by_count = 0;
+  values.by_weights = false;
   Status status = status_prefix(answer_other(other, &values, &there), "--check, along a direction");
   for (int g = 0; g < words->of_count && !status; g++)
     check->between[g] += side * there.gradient.values[g] / (2 * direction->step);
@@ -103,10 +115,14 @@ Status app_gradient_check(AppGradientCheck *check, const AppJobOptions *job, con
   Other half = {.job = *job}, ahead = {.job = *job}, behind = {.job = *job};
   const Direction direction = draw_direction(model, words, answer);
   *check = (AppGradientCheck){0};
+  TRY(halve(check, &half, model, words, answer));
+  if (!leads_away(&direction, words)) {
+    for (int g = 0; g < words->of_count; g++) check->along[g] = check->between[g] = NAN;
+    return STATUS_OK;
+  }
   for (int g = 0; g < words->of_count; g++)
     for (int p = 0; p < words->by_count; p++)
       check->along[g] += answer->gradient.derivatives[g * words->by_count + p] * direction.ways[p];
-  TRY(halve(check, &half, model, words, answer));
   TRY(add_along(check, &ahead, &direction, 1, model, words, answer));
   return add_along(check, &behind, &direction, -1, model, words, answer);
 }

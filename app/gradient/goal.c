@@ -40,7 +40,8 @@ static Status read_quantity(const FemModel *model, char *text, double at, FemTer
   term->time = at;
   if (mark && !read_number(mark + 1, &term->time))
     return status_fail(STATUS_INPUT, "'@%s' is no time; expected %s@TIME in seconds", mark + 1, text);
-  if (term->time > 0 && (isinf(term->time) || term->time <= end * (1 + FEM_TIME_RESOLUTION)))
+  if (term->time > FEM_TIME_RESOLUTION * end &&
+      (isinf(term->time) || term->time <= end * (1 + FEM_TIME_RESOLUTION)))
     return STATUS_OK;
   return status_fail(STATUS_INPUT, "%s: the time %.9g s is not within the run, 0 to time.end = %.9g s", text,
                      term->time, end);

@@ -193,9 +193,10 @@ static Status sample_body(Series *series, const AppPlotAlong *along, const Sourc
 
 static int count_bodies(const FemVtuContent *frame) {
   double most = -1;
-  for (int k = 0; k < frame->field_count; k++)
-    for (int c = 0; strcmp(frame->fields[k].name, "body") == 0 && c < frame->cell_count; c++)
-      most = fmax(most, frame->fields[k].values[c]);
+  for (int k = 0; k < frame->field_count; k++) {
+    bool is_body = strcmp(frame->fields[k].name, "body") == 0;
+    for (int c = 0; is_body && c < frame->cell_count; c++) most = fmax(most, frame->fields[k].values[c]);
+  }
   return (int)most + 1;
 }
 

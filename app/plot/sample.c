@@ -108,10 +108,12 @@ static void add_cells(Corner *corners, const FemVtuContent *frame, const AppPlot
 static Status sample_vertices(AppPlotPoints *points, const FemVtuContent *frame, const AppPlotPath *path,
                               const AppPlotQuantity *quantity, const FemVtuField *bodies, int body) {
   ContactSurface surface = {0};
+  int begin = 0, end = frame->cell_count; // cells of a body stand together
+  while (begin < end && bodies->values[begin] != body) begin++;
+  while (end > begin && bodies->values[end - 1] != body) end--;
   Corner *corners = memory_zeroed((size_t)frame->vertex_count, sizeof *corners);
-  Status status = corners
-                      ? contact_surface_find(&surface, (const int(*)[4])frame->cells, 0, frame->cell_count)
-                      : status_no_memory("the points of a plot");
+  Status status = corners ? contact_surface_find(&surface, (const int(*)[4])frame->cells, begin, end)
+                          : status_no_memory("the points of a plot");
   if (!status) add_cells(corners, frame, quantity, bodies, body);
   for (int f = 0; f < surface.count && !status; f++)
     for (int v = 0; v < 3; v++) corners[surface.faces[f].vertices[v]].is_surface = true;
@@ -128,7 +130,7 @@ static Status sample_vertices(AppPlotPoints *points, const FemVtuContent *frame,
 
 // ---- Through elements.
 
-// The barycentric coordinates of a place; false: the tetrahedron is flat.
+// The barycentric coordinates of a place; false: the tetrahedron is flat, or has no place.
 static bool locate(const Vec3 x[4], Vec3 at, double shares[4]) {
   double volume = vec3_det4(x[0], x[1], x[2], x[3]);
   for (int k = 0; k < 4; k++) {
@@ -136,7 +138,7 @@ static bool locate(const Vec3 x[4], Vec3 at, double shares[4]) {
     y[k] = at;
     shares[k] = vec3_det4(y[0], y[1], y[2], y[3]) / volume;
   }
-  return volume != 0;
+  return isfinite(volume) && volume != 0;
 }
 
 static double value_within(const FemVtuContent *frame, const AppPlotQuantity *quantity, int cell,

@@ -24,7 +24,7 @@ typedef struct ContactStickPull {
   double (*before)[3]; // ∂g/∂q of the last history's entries             (entry_count)
   double *stiffness;   // ∂g/∂ ln c of normal law and springs            (interface_count)
   double *friction;    // ∂g/∂μ                                           (interface_count)
-  double *answers; // ∂g/∂V and ∂g/∂x̄ of pairs of meshes; NULL: not wanted (mesh_pair_count, 4)
+  double *answers;     // ∂g/∂V and ∂g/∂x̄ of pairs of meshes; NULL: not wanted (mesh_pair_count, 4)
   double (*moves)[2][3]; // Σ of ∂g/∂x, of ∂g/∂xⁿ over the vertices of side 0         (interface_count)
 } ContactStickPull;
 

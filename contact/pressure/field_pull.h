@@ -22,9 +22,9 @@ typedef struct ContactFieldSlopes {
   double weights[2][4];
 } ContactFieldSlopes;
 
-// Adds ∂g/∂x of the vertices of both tetrahedra (2, 4, 3) and, unless NULL, ∂g/∂V and ∂g/∂x̄ to `answer` (4). `coordinates` of the cells, as evaluated; no law.
-// `slopes`: ∂V/∂x and ∂x̄/∂x (4, 24) by the cells' coordinates of the model that gave V and x̄; NULL: clipping
-// gave them.
+// Adds ∂g/∂x of the vertices of both tetrahedra (2, 4, 3) and, unless NULL, ∂g/∂V and ∂g/∂x̄ to `answer` (4).
+// `coordinates` of the cells, as evaluated; no law. `slopes`: ∂V/∂x and ∂x̄/∂x (4, 24) by the cells'
+// coordinates of the model that gave V and x̄; NULL: clipping gave them.
 void contact_field_pull(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
                         const ContactFieldPair *field, const double *slopes, const ContactFieldSlopes *by,
                         double slope[24], double answer[4]);

@@ -19,8 +19,8 @@ typedef struct Facets {
   double area, round_area, hollow_area;
 } Facets;
 
-// A body is round, or hollow, if half of one in so many parts of its surface is, and its edge is the one below
-// which one in so many is.
+// A body is round, or hollow, if half of one in so many parts of its surface is, and its edge is the one
+// below which one in so many is.
 enum { PARTS = 10 };
 
 // A symmetric form of the plane of a facet.

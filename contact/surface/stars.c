@@ -122,7 +122,8 @@ static void weigh_centre(const Vec3 x[NODE_COUNT], int face, double weights[NODE
   add_quadratic_shares(&load);
   leave_out_slivers(&load);
   for (int n = 0; n < 3; n++) at = vec3_add(at, vec3_scale(1.0 / 3, load.x[n]));
-  do { // the centre moves the areas by a share of the edges' offsets, so it converges fast, until all is rounding
+  do { // the centre moves the areas by a share of the edges' offsets, so it converges fast, until all is
+       // rounding
     from = at, before = moved;
     weigh_fan(&load, at, own);
     at = (Vec3){0, 0, 0};

@@ -189,6 +189,11 @@ static Status compare(Adjoint *adjoint, double *mismatch) {
   return fem_equilibrium_forces(&adjoint->equilibrium, time, adjoint->u, adjoint->force);
 }
 
+// NaN is the worst.
+static double worse(double a, double b) {
+  return isnan(b) || b > a ? b : a;
+}
+
 // g, λ, and what is left of ∂g/∂x on the prescribed coordinates.
 static Status solve_goal(Adjoint *adjoint, int g, double *factors, FemGradient *gradient) {
   const FemNumbering *numbering = &adjoint->equilibrium.system->numbering;
@@ -202,8 +207,8 @@ static Status solve_goal(Adjoint *adjoint, int g, double *factors, FemGradient *
   TRY(solve(adjoint, &residual));
   for (int i = 0; i < adjoint->count; i++) all[numbering->dof_of_unknown[i]] = adjoint->lambda[i];
   TRY(compare(adjoint, &mismatch));
-  gradient->residuals[g] = fmax(gradient->residuals[g], residual);
-  gradient->mismatches[g] = fmax(gradient->mismatches[g], mismatch);
+  gradient->residuals[g] = worse(gradient->residuals[g], residual);
+  gradient->mismatches[g] = worse(gradient->mismatches[g], mismatch);
   TRY(fem_tangent_pull(&adjoint->tangent, all, adjoint->change.product));
   for (size_t i = 0; i < values; i++) slope[i] -= adjoint->change.product[i];
   if (!gradient->weights) return STATUS_OK;
@@ -251,7 +256,7 @@ static Status find(FemGradient *gradient, Adjoint *adjoint) {
   TRY(settle(adjoint, time, &left));
   TRY(fem_equilibrium_forces(equilibrium, time, adjoint->u, adjoint->force));
   double largest = fem_equilibrium_largest(system->forces, 3 * system->model->vertex_count);
-  gradient->unbalanced = fmax(gradient->unbalanced, largest > 0 ? left / largest : 0);
+  gradient->unbalanced = worse(gradient->unbalanced, largest > 0 ? left / largest : 0);
   TRY(fem_equilibrium_factorise(equilibrium, time, adjoint->u, 0));
   TRY(fem_tangent_create(&adjoint->tangent, system, &adjoint->state));
   TRY(fem_change_create(&adjoint->change, &adjoint->tangent));

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "fem/effect/contact/contact.h"
+#include "fem/model/compliance/laws.h"
 #include "overlap/slopes.h"
 
 bool fem_learned_is_there(const FemModel *model) {
@@ -14,10 +15,7 @@ bool fem_learned_is_there(const FemModel *model) {
 }
 
 static Status check_laws(const FemContactDef *contact) {
-  bool has_law = contact->law.law.kind != CONTACT_LAW_LINEAR;
-  for (int i = 0; i < contact->pair_count; i++)
-    has_law = has_law || contact->pairs[i].law.law.kind != CONTACT_LAW_LINEAR;
-  if (!has_law) return STATUS_OK;
+  if (!fem_laws_are_wanted(contact)) return STATUS_OK;
   return status_fail(STATUS_INPUT, "contact.law: gradients with a pressure law need contact.overlap: clip, "
                                    "whose polyhedra the law is summed over");
 }
@@ -40,7 +38,8 @@ Status fem_learned_count_weights(const FemModel *model, size_t *count) {
   OverlapModel overlap;
   if (!model->scene->contact.is_on) return status_fail(STATUS_INPUT, "--weights: the scene has no contact");
   TRY(fem_effect_contact_create_overlap(model->scene, NULL, &overlap));
-  const OverlapTraining *training = overlap.ops->training;
+  const OverlapTraining *training =
+      overlap_model_has_own_centroid(&overlap) ? overlap.ops->training : NULL; // pulls x̄, too
   *count = training ? training->count(overlap.self) : 0;
   overlap_model_destroy(&overlap);
   if (training) return STATUS_OK;

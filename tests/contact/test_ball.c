@@ -200,7 +200,7 @@ START_TEST(flat_tetrahedra_press_along_no_direction_that_pulls) {
     met++;
     for (int k = 0; k < 144; k++) largest = fmax(largest, fabs(hessian[k]));
     double bound = rest / whole_volume(tet) * volume;
-    ck_assert(is_definite(hessian, bound + 2e-4 * largest));
+    ck_assert(is_definite(hessian, bound + 2e-5 * largest));
   }
   ck_assert_int_gt(met, 300);
 }

@@ -133,9 +133,16 @@ START_TEST(slopes_by_weights_agree_with_differences) {
   double *own = calloc(count, sizeof *own), *slope = calloc(count, sizeof *slope),
          *way = calloc(count, sizeof *way), *moved = calloc(count, sizeof *moved);
   for (int i = 0; i < TRAINED; i++) draw(&random, pairs + SIZE * i);
-  // The last ones lie on a plane of the other: clipping has a share.
+  // The last ones lie on a plane of the other: of some clipping has a share.
   for (int i = TRAINED / 2; i < TRAINED; i++)
     for (int v = 0; v < 3; v++) pairs[SIZE * i + 3 * v + 2] = pairs[SIZE * i + 12 + 3 * v + 2] = 0.01 * v;
+  double volumes[TRAINED];
+  unsigned flags[TRAINED];
+  int blended = 0;
+  ck_assert_ok(overlap_model_eval(
+      &model, &(OverlapBatch){.pair_count = TRAINED, .pairs = pairs, .volume = volumes, .flags = flags}));
+  for (int i = 0; i < TRAINED; i++) blended += volumes[i] > 0 && (flags[i] & OVERLAP_BLENDED) != 0;
+  ck_assert_int_gt(blended, 0);
   for (int i = 0; i < 4 * TRAINED; i++) by[i] = random_normal(&random);
   training->read(model.self, own);
   ck_assert_ok(training->pull(model.self, TRAINED, pairs, by, slope));

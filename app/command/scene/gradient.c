@@ -121,7 +121,11 @@ static void print_head(const Answer *answer, int g) {
            switches_of(gradient, text, sizeof text));
   else
     printf(", of the matrix %.1e\n", gradient->mismatches[g]);
-  if (answer->options->is_checked)
+  if (answer->options->is_checked && isnan(answer->check.along[g]))
+    printf("along a random direction: not found, since all these parameters are 0, or choose the contact "
+           "stiffness "
+           "that is kept (--total lets it follow)\n");
+  else if (answer->options->is_checked)
     printf("along a random direction: %.10g by the derivatives, %.10g by a difference of runs\n",
            answer->check.along[g], answer->check.between[g]);
 }
@@ -231,6 +235,8 @@ static void check(struct argp_state *state, void *given) {
   if (!options->words.of_count) argp_error(state, "say of what, as in --of displacement:block:z");
   if (!options->words.by_count && !options->weights)
     argp_error(state, "say by what, as in --by contact.stiffness");
+  if (!options->words.by_count && options->is_checked)
+    argp_error(state, "--check follows parameters: say which, as in --by contact.stiffness");
 }
 
 static int run_command(int argument_count, char **arguments) {

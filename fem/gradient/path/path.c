@@ -6,6 +6,8 @@
 
 #include "base/memory.h"
 #include "fem/model/compliance/compliance.h"
+#include "fem/model/compliance/laws.h"
+#include "fem/sparse/vector.h"
 
 // Of a system that GMRES solves, the share of the right side that may be left.
 static const double RESIDUAL = 1e-11;
@@ -167,7 +169,7 @@ static Status solve(Sweep *sweep, double *beta, double *residual) {
   double whole = 0, left = 0;
   *residual = 0;
   memset(beta, 0, (size_t)sweep->replay.n * sizeof *beta);
-  if (fem_equilibrium_largest(sweep->right, sweep->replay.n) == 0) return STATUS_OK; // behind all terms
+  if (fem_vector_dot(sweep->replay.n, sweep->right, sweep->right) == 0) return STATUS_OK; // behind all terms
   if (!is_exact(sweep)) return fem_krylov_solve(&sweep->krylov, sweep->right, RESIDUAL, beta, residual);
   TRY(fem_equilibrium_solve(&sweep->replay.equilibrium, sweep->right, beta));
   fem_matrix_multiply(&sweep->replay.system.matrix, beta, sweep->product);
@@ -449,10 +451,8 @@ static bool rubs_on(const FemModel *model, int party) {
 
 static Status check_pairs(const FemModel *model) {
   const FemSceneDef *scene = model->scene;
-  bool has_law = scene->contact.law.law.kind != CONTACT_LAW_LINEAR;
-  for (int i = 0; i < scene->contact.pair_count; i++)
-    has_law = has_law || scene->contact.pairs[i].law.law.kind != CONTACT_LAW_LINEAR;
-  if (has_law) return status_fail(STATUS_INPUT, "contact.law: with friction it has no gradient");
+  if (fem_laws_are_wanted(&scene->contact))
+    return status_fail(STATUS_INPUT, "contact.law: with friction it has no gradient");
   for (int o = 0; o < scene->obstacle_count; o++)
     if (scene->obstacles[o].kind == FEM_OBSTACLE_BALL && rubs_on(model, fem_change_party(model, o)))
       return status_fail(STATUS_INPUT,

@@ -463,6 +463,7 @@ START_TEST(quantities_that_are_not_there_are_refused_by_name) {
                                          {"energy:kinetic", "none of the quantities"},
                                          {"displacement:block:z@soon", "'@soon' is no time"},
                                          {"displacement:block:z@-1", "not within the run"},
+                                         {"displacement:block:z@1e-13", "not within the run"},
                                          {"displacement:block:z@1.01", "time.end = 1 s"},
                                          {"energy:gravity", "no effects.gravity"}};
   char text[2048];
