@@ -15,6 +15,9 @@ MODELS = "clip,clip32,exact,cgal,geo,geo-small,hybrid,tpn"
 LEARNED = "geo,geo-small,hybrid"
 MOVING = ("01_drop", "02_two_blocks", "03_spheres", "05_press", "06_bunny_like", "10_incline", "11_rolling_ball", "12_fold", "13_dead_bounce", "14_rollers", "15_sleepers")
 STATIC = ("26_hertz", "30_snap_fit", "31_seal")
+BETWEEN_MESHES = ("02_two_blocks", "03_spheres", "05_press", "12_fold", "15_sleepers", "30_snap_fit")  # in the others contact is with obstacles alone
+BOUND_PAIRS = (("scenes", ("--law", "scene", "--mix", "scene=1", "--seed", "9003")), ("uniform V", ("--law", "paper-test", "--mix", "volumetric=1", "--seed", "9001")))
+BOUND_DOUBTS = (".005", ".01")
 
 
 class Bench(NamedTuple):
@@ -23,6 +26,7 @@ class Bench(NamedTuple):
     minutes: float
     picture: tuple = ()
     lacks: int = -1  # the exit code that says that this machine cannot measure it: then the table stays as it is
+    shown: str = ""  # in place of the commands, where they are many of one form
 
 
 class Runs(NamedTuple):
@@ -105,11 +109,7 @@ TABLE_4 = (("accuracy.none", "status correct, no intersection", "98.02 %"), ("ac
 
 
 def table_4(told):
-    decoder, models, place = json.JSONDecoder(), [], 0
-    while place < len(told.rstrip()):
-        model, place = decoder.raw_decode(told, place)
-        models.append(model)
-        place += len(told[place:]) - len(told[place:].lstrip())
+    models = lists(told)
 
     def cell(model, key):
         for part in key.split("."):
@@ -117,6 +117,42 @@ def table_4(told):
         return figure(model, 3) if key.startswith("mae") else f"{100 * model:.{0 if key.startswith('bin') else 2}f} %"
     rows = [[heading, cell(models[0], key), paper, *(cell(model, key) for model in models[1:])] for key, heading, paper in TABLE_4]
     return table(["", f"`{models[0]['model']}`", "paper", *(f"`{model['model']}`" for model in models[1:])], rows)
+
+
+def lists(told):
+    """The JSON values that were printed one after the other."""
+    decoder, found, told = json.JSONDecoder(), [], told.strip()
+    while told:
+        value, end = decoder.raw_decode(told)
+        found.append(value)
+        told = told[end:].lstrip()
+    return found
+
+
+def percent(share):
+    return "–" if share is None else f"{100 * share:.2g} %"
+
+
+def whole_runs(told):
+    """A row a model and scene, from what `tetlap compare --json` printed for each scene."""
+    rows = []
+    for runs in lists(told):
+        for run in runs:
+            summary, counters = run["summary"], run["summary"]["counters"]
+            pairs = counters["contact_pairs"]
+            is_reference = run["model"] == run["reference"]
+            rows.append([os.path.basename(run["scene"])[:-5], f"`{run['model']}`", run["outcome"], summary["steps"], counters["newton_iterations"], counters["newton_failures"],
+                         "–" if is_reference else figure(run["trajectory_error"]), "–" if is_reference else figure(run["force_error_l2"]),
+                         *("–" if is_reference else percent(counters[name] / pairs) for name in ("overlap_fallbacks", "overlap_blended")), figure(summary["cpu_s"], 3)])
+    return table(["example", "model", "outcome", "steps", "Newton iterations", "failures", "path", "forces", "wholly", "partly", "processor time [s]"], rows, 3)
+
+
+def bound(told):
+    """A row a set of pairs and limit of the doubt, from what `tetlap eval hybrid --json` printed."""
+    return table(["pairs", "`doubt`", "error within B", "B/V, median", "95 %", r"\|ΔV\|/V, median", "95 %", "wholly `clip`", "partly", "ΣΔV/ΣV", "moments", "∇V error"],
+                 [[pairs, doubt, *(percent(row[key]) for key in ("bound_coverage", "bound_width_median", "bound_width_p95", "bound_error_median", "bound_error_p95", "handed_on",
+                                                               "handed_on_in_part", "volume_error_sum", "moment_error", "gradient_error"))]
+                  for (pairs, doubt), row in zip(((pairs, doubt) for pairs, _ in BOUND_PAIRS for doubt in BOUND_DOUBTS), lists(told))], 1)
 
 
 def endurance(told):
@@ -196,6 +232,11 @@ TABLES = {
     "centroid": Bench([["tetlap", "bench", "overlap", "-m", LEARNED, "-s", "near", "-Q", "V,V+centroid,V+grad", "-r", "7", "--json"]],
                       by_quantity("pairs_per_cpu_second", ("near",), ("V", "V+centroid", "V+grad")), 1),
     "unseen": Bench([["tetlap", "bench", "unseen", "-m", LEARNED, "--seeds", "3", "--json"]], unseen, 6),
+    "whole-runs": Bench([["tetlap", "compare", "-q", "-j", "-t", "1", "--audit=0", "-m", "clip,geo-small,geo,hybrid", "-o", f"{{folder}}/{name}", example(name)] for name in BETWEEN_MESHES],
+                        whole_runs, 3, shown="tetlap compare -q -j -t 1 --audit=0 -m clip,geo-small,geo,hybrid examples/NAME.yaml"),
+    "bound": Bench([["tetlap", "eval", "hybrid", *law, "--count", "40000", "--doubt", doubt, "--json"] for _, law in BOUND_PAIRS for doubt in BOUND_DOUBTS], bound, 1,
+                   shown="tetlap eval hybrid --law LAW --mix KIND=1 --seed SEED --count 40000 --doubt DOUBT --json"),
+    "ranking": Bench([["tools/measure/ranking", "--rows", "benchmarks/ranking.json"]], as_told, 0.1),
     "learned": Bench([["tools/measure/learned", "{program}"]], as_told, 10),
     "own-models": Bench([["tools/measure/own", "{program}"]], as_told, 2),
     "precision": Bench([["tools/measure/precision", "--program", "{program}", "-m", "clip,geo,geo-small,hybrid", *(f"examples/precision/{name}.yaml"
@@ -261,6 +302,7 @@ TABLES = {
                                         (("blocks", ("bodies.lower.mesh.box.cells=24", "bodies.upper.mesh.box.cells=30")), ("pressed", ("bodies.lower.mesh.box.cells=24", "bodies.upper.mesh.box.cells=30")),
                                          ("ball", ("bodies.block.mesh.box.cells=36",))) for solver in ("cholmod", "amg")],
                   {**COST, "largest memory [MB]": lambda summary, _: round(summary["peak_rss_bytes"] / 1e6)}, 5),
+    "million": Bench([["tests/long/million", "4", "{build}"]], as_told, 10),
     "ranks": Runs(["ranks", "vertices"], [([count, (cells + 1)**3], "benchmarks/scenes/ball.yaml", (f"bodies.block.mesh.box.cells={cells}", "solver.linear=amg"), ("--ranks", str(count)))
                                           for count, cells in ((1, 27), (2, 34), (4, 43))],
                   {"Newton iterations": counter("newton_iterations"), "iterations": counter("linear_iterations"),
