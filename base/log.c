@@ -7,7 +7,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "base/clock.h"
+#include "base/machine/clock.h"
 
 static LogLevel level = LOG_SILENT;
 static bool progress_is_shown;

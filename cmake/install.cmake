@@ -67,7 +67,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 get_source_file_property(gmsh_name fem/mesh/reader/gmsh_library.c COMPILE_DEFINITIONS)
 string(REGEX REPLACE ".*libgmsh\\.so\\.([0-9.]+).*" "libgmsh\\1" CPACK_DEBIAN_PACKAGE_DEPENDS "${gmsh_name}")
 # PETSc is loaded where a scene asks for it: libpetsc_real.so.3.18 is in libpetsc-real3.18.
-get_source_file_property(petsc_name fem/sparse/petsc_library.c COMPILE_DEFINITIONS)
+get_source_file_property(petsc_name fem/sparse/petsc/petsc_library.c COMPILE_DEFINITIONS)
 string(REGEX REPLACE ".*libpetsc_real\\.so\\.([0-9.]+).*" "libpetsc-real\\1" petsc_package "${petsc_name}")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "${petsc_package}, gnuplot-nox, libmicrohttpd12, python3-numpy")
 include(CPack)

@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #include "app/cli/ranks.h"
-#include "base/clock.h"
+#include "base/machine/clock.h"
 #include "base/ranks.h"
 #include "base/status.h"
 #include "dist/division.h"

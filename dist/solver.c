@@ -2,14 +2,15 @@
 // A matrix that ranks share, solved by PETSc. Right sides and solutions are whole on every rank. Conjugate
 // gradients multiply by what each rank has added (dist/product.h); rows are made of it for a preconditioner
 // alone (dist/entries.h), which is kept for new numbers while iterations stay near what they were when it was
-// new (as in fem/sparse/solver_petsc.c). BoomerAMG takes them as its finest level, so no other copy is left.
+// new (as in fem/sparse/petsc/solver_petsc.c). BoomerAMG takes them as its finest level, so no other copy is
+// left.
 #include "dist/solver.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "base/log.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "dist/entries.h"
@@ -61,9 +62,9 @@ static void fail_in(const DistSolver *solver, const char *what, PetscErrorCode c
     if (code_) fail_in(solver, what, code_);                                                                 \
   } while (0)
 
-// As of one process (fem/sparse/solver_petsc.c), but for the sweeps: across ranks those of Gauss and Seidel
-// need not converge, and with l1 they do (Baker, Falgout, Kolev and Yang 2011); one forward down and one
-// backward up is symmetric.
+// As of one process (fem/sparse/petsc/solver_petsc.c), but for the sweeps: across ranks those of Gauss and
+// Seidel need not converge, and with l1 they do (Baker, Falgout, Kolev and Yang 2011); one forward down and
+// one backward up is symmetric.
 static void set_options(void) {
   static const char *const options[][2] = {
       {"-tetlap_amg_pc_type", "hypre"},

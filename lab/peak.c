@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-#include "base/clock.h"
-#include "base/cpu.h"
+#include "base/machine/clock.h"
+#include "base/machine/cpu.h"
 
 #if defined(__x86_64__)
 #include <immintrin.h>

@@ -2,7 +2,7 @@
 #include "app/bench/report.h"
 
 #include "app/cli/versions.h"
-#include "base/cpu.h"
+#include "base/machine/cpu.h"
 
 // What every row tells.
 typedef struct Common {

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "base/log.h"
+#include "base/machine/clock.h"
 
 void app_bench_timer_start(AppBenchTimer *timer) {
   timer->wall_began = clock_wall_s();

@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "base/clock.h"
 #include "base/files/file.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 
 static const double PERIOD_S = 1;

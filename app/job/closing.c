@@ -8,7 +8,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
-#include "fem/run/run_result.h"
+#include "fem/run/result/run_result.h"
 
 // The lines of a text, the first of them behind a label ("": none).
 static void print_block(const char *label, const char *text) {

@@ -18,8 +18,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "base/clock.h"
 #include "base/files/temporary.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 
 enum { TO_BROWSER = 3, FROM_BROWSER = 4 }; // the descriptors at which Chromium expects the pipes

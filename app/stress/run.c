@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "app/scene/read.h"
-#include "base/clock.h"
 #include "base/files/data.h"
+#include "base/machine/clock.h"
 #include "base/vec3.h"
 #include "fem/model/build.h"
 

@@ -10,7 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "base/clock.h"
+#include "base/machine/clock.h"
 
 static const struct timespec PAUSE = {.tv_nsec = 10 * 1000 * 1000};
 

@@ -8,10 +8,10 @@
 
 #include "app/sweep/child.h"
 #include "app/sweep/table.h"
-#include "base/clock.h"
-#include "base/cpu.h"
 #include "base/files/file.h"
 #include "base/log.h"
+#include "base/machine/clock.h"
+#include "base/machine/cpu.h"
 #include "base/memory.h"
 
 // How long a run may take to leave its checkpoint when the sweep is stopped.

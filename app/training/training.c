@@ -9,8 +9,8 @@
 #include "app/cli/versions.h"
 #include "app/training/guard.h"
 #include "app/training/log.h"
-#include "base/clock.h"
 #include "base/files/file.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "datagen/law/plan.h"
 

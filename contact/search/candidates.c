@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/clock.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/limits.h"

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/clock.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "device/backend/cache.h"
 #include "device/backend/library.h"

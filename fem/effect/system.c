@@ -5,13 +5,13 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "base/clock.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "base/vec3.h"
+#include "fem/effect/formulas.h"
 #include "fem/model/drivers.h"
 #include "fem/model/floating.h"
-#include "fem/model/formulas.h"
 #include "fem/scene/drive.h"
 #include "fem/sparse/solver.h"
 #include "fem/sparse/vector.h"

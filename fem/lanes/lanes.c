@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/lanes/lanes.h"
 
-#include "base/cpu.h"
+#include "base/machine/cpu.h"
 
 static const FemLanes *const all[] = {
     &fem_lanes_portable,

@@ -3,9 +3,9 @@
 
 #include <stdio.h>
 
-#include "base/clock.h"
-#include "base/cpu.h"
 #include "base/files/file.h"
+#include "base/machine/clock.h"
+#include "base/machine/cpu.h"
 #include "base/memory.h"
 #include "base/ranks.h"
 #include "fem/output/vtk/pvd.h"

@@ -4,9 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "base/files/file.h"
 #include "base/log.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"

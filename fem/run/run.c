@@ -5,12 +5,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "base/files/file.h"
 #include "base/log.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "base/ranks.h"
-#include "fem/model/formulas.h"
+#include "fem/effect/formulas.h"
 #include "fem/model/limits.h"
 #include "fem/model/tolerance.h"
 #include "fem/run/check/choice.h"
@@ -18,14 +18,14 @@
 #include "fem/run/checkpoint/restart.h"
 #include "fem/run/checkpoint/run_checkpoint.h"
 #include "fem/run/rest/hold.h"
-#include "fem/run/run_clock.h"
+#include "fem/run/result/run_clock.h"
+#include "fem/run/result/spread.h"
 #include "fem/run/run_frames.h"
 #include "fem/run/run_load.h"
 #include "fem/run/run_loop.h"
 #include "fem/run/run_stage.h"
 #include "fem/run/run_step.h"
 #include "fem/run/run_watch.h"
-#include "fem/run/spread.h"
 
 // The next state while all bodies sleep: as late as contact lists allow for obstacles that move, and not
 // beyond what these do in between.

@@ -13,8 +13,8 @@
 #ifndef TETLAP_FEM_RUN_RUN_H
 #define TETLAP_FEM_RUN_RUN_H
 
+#include "fem/run/result/run_result.h"
 #include "fem/run/run_options.h"
-#include "fem/run/run_result.h"
 
 // Runs the model to its end. `result` is filled as far as the run came also when it fails; destroy it always.
 Status fem_run(const FemModel *model, const FemRunOptions *options, FemRunResult *result);

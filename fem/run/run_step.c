@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/log.h"
-#include "fem/run/run_clock.h"
+#include "fem/run/result/run_clock.h"
 #include "fem/run/run_frames.h"
 #include "fem/run/run_stage.h"
 #include "fem/run/run_watch.h"

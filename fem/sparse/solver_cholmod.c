@@ -10,7 +10,7 @@
 #include <string.h>
 #include <suitesparse/cholmod.h>
 
-#include "base/clock.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "fem/sparse/front/factor.h"
 #include "fem/sparse/vector.h"

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <suitesparse/klu.h>
 
-#include "base/clock.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "fem/sparse/vector.h"
 

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-#include "base/clock.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "fem/sparse/cg.h"
 #include "fem/sparse/vector.h"

@@ -3,7 +3,7 @@
 
 #include <stddef.h>
 
-#include "base/cpu.h"
+#include "base/machine/cpu.h"
 
 #if defined(__x86_64__)
 // The narrower first, so that a processor has a number of the first ones.

@@ -22,7 +22,7 @@
 #include <unistd.h>
 
 #include "base/files/data.h"
-#include "base/interrupt.h"
+#include "base/machine/interrupt.h"
 #include "base/memory.h"
 
 enum { HELLO = 1, EVALUATE = 2, VERSION = 1, WORDS = 4, PAIR_BYTES = 432, LEAST_CAPACITY = 1024 };

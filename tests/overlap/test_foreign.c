@@ -15,7 +15,7 @@
 #include <tetlap/model.h>
 #include <unistd.h>
 
-#include "base/interrupt.h"
+#include "base/machine/interrupt.h"
 #include "base/random.h"
 #include "overlap/model.h"
 #include "overlap/source.h"

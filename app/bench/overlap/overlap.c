@@ -13,8 +13,8 @@
 #include "app/cli/model_names.h"
 #include "app/cli/parse.h"
 #include "app/evaluation/card.h"
-#include "base/clock.h"
 #include "base/log.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 
 typedef enum Quantity { VOLUME, CENTROID, GRADIENT, HESSIAN, QUANTITY_COUNT } Quantity;

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "app/evaluation/evaluation.h"
-#include "base/clock.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/system.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/commands.h"
 
-#include "app/cli/completion.h"
+#include "app/cli/pages/completion.h"
 #include "app/cli/parse.h"
 #include "base/log.h"
 #include "base/status.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/commands.h"
 
-#include "app/cli/manual.h"
+#include "app/cli/pages/manual.h"
 #include "app/cli/parse.h"
 #include "base/text.h"
 

@@ -10,8 +10,8 @@
 #include "app/cli/parse.h"
 #include "app/cli/versions.h"
 #include "app/job/job.h"
-#include "base/clock.h"
 #include "base/log.h"
+#include "base/machine/clock.h"
 #include "datagen/run.h"
 
 enum { BAR_WIDTH = 24 };

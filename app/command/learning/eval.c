@@ -14,8 +14,8 @@
 #include "app/evaluation/paths.h"
 #include "app/evaluation/report.h"
 #include "app/job/job.h"
-#include "base/clock.h"
 #include "base/log.h"
+#include "base/machine/clock.h"
 #include "overlap/weights.h"
 
 enum { BLOCK = 16384 };

@@ -6,8 +6,8 @@
 #include "app/job/job.h"
 #include "app/stress/all.h"
 #include "app/stress/stress.h"
-#include "base/cpu.h"
 #include "base/log.h"
+#include "base/machine/cpu.h"
 
 typedef struct Options {
   AppStressOptions stress;

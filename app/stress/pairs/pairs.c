@@ -8,7 +8,7 @@
 #include "app/evaluation/model.h"
 #include "app/stress/pairs/tolerances.h"
 #include "app/stress/pairs/traits.h"
-#include "base/clock.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "datagen/hard.h"

@@ -14,7 +14,7 @@
 #include <stddef.h>
 
 #include "base/files/journal.h"
-#include "fem/run/run_result.h"
+#include "fem/run/result/run_result.h"
 #include "fem/time/audit.h"
 
 enum { FEM_CHECKPOINT_NAME = 32 };

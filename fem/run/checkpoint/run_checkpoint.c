@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "base/files/file.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "fem/run/checkpoint/restart.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "overlap/geo/bundle/bundle.h"
 
-#include "base/cpu.h"
+#include "base/machine/cpu.h"
 
 static const OverlapGeoBundleKernel *const kernels[] = {
     &overlap_geo_bundle_kernel_portable,

@@ -3,7 +3,7 @@
 
 #include <stddef.h>
 
-#include "base/cpu.h"
+#include "base/machine/cpu.h"
 
 #define LINKS .link_count = 4, .links = {{1, 1}, {2, 0}, {1, 2}, {2, 1}}
 

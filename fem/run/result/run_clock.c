@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/run/run_clock.h"
+#include "fem/run/result/run_clock.h"
 
-#include "base/clock.h"
+#include "base/machine/clock.h"
 
 static double solver_s(const FemSolverStats *stats) {
   return stats->analyse_s + stats->factorise_s + stats->solve_s;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/sparse/hierarchy.h"
+#include "fem/sparse/petsc/hierarchy.h"
 
 #include "base/memory.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The result of a run: times, counts, extremes, and on demand its trajectory.
-#ifndef TETLAP_FEM_RUN_RUN_RESULT_H
-#define TETLAP_FEM_RUN_RUN_RESULT_H
+#ifndef TETLAP_FEM_RUN_RESULT_RUN_RESULT_H
+#define TETLAP_FEM_RUN_RESULT_RUN_RESULT_H
 
 #include "base/files/record.h"
 #include "contact/evaluation.h"

@@ -13,11 +13,11 @@
 #include <limits.h>
 #include <math.h>
 
-#include "base/clock.h"
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "fem/sparse/cg.h"
-#include "fem/sparse/hierarchy.h"
-#include "fem/sparse/petsc_library.h"
+#include "fem/sparse/petsc/hierarchy.h"
+#include "fem/sparse/petsc/petsc_library.h"
 #include "fem/sparse/solver.h"
 #include "fem/sparse/vector.h"
 #include "fem/sparse/wear.h"

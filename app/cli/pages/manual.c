@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/cli/manual.h"
+#include "app/cli/pages/manual.h"
 
 #include <ctype.h>
 #include <stdlib.h>

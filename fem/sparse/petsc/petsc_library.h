@@ -2,8 +2,8 @@
 // The functions of PETSc that we call, found in its library when a solver of it is first asked for. The
 // program is not linked to PETSc: it brings MPI and some seventy libraries along, which would be loaded at
 // each start.
-#ifndef TETLAP_FEM_SPARSE_PETSC_LIBRARY_H
-#define TETLAP_FEM_SPARSE_PETSC_LIBRARY_H
+#ifndef TETLAP_FEM_SPARSE_PETSC_PETSC_LIBRARY_H
+#define TETLAP_FEM_SPARSE_PETSC_PETSC_LIBRARY_H
 
 #include <petscksp.h>
 #include <stdbool.h>

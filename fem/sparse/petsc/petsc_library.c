@@ -2,7 +2,7 @@
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE 1 // dladdr
 #endif
-#include "fem/sparse/petsc_library.h"
+#include "fem/sparse/petsc/petsc_library.h"
 
 #include <dlfcn.h>
 #include <limits.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Wall time of a part of a run that no phase within it has named.
-#ifndef TETLAP_FEM_RUN_RUN_CLOCK_H
-#define TETLAP_FEM_RUN_RUN_CLOCK_H
+#ifndef TETLAP_FEM_RUN_RESULT_RUN_CLOCK_H
+#define TETLAP_FEM_RUN_RESULT_RUN_CLOCK_H
 
 #include "fem/run/run_state.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "base/interrupt.h"
+#include "base/machine/interrupt.h"
 
 static volatile sig_atomic_t flag;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/model/formulas.h"
+#include "fem/effect/formulas.h"
 
 #include <math.h>
 #include <stdio.h>

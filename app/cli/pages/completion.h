@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scripts by which shells complete commands and their options, made from the same tables as `--help`.
-#ifndef TETLAP_APP_CLI_COMPLETION_H
-#define TETLAP_APP_CLI_COMPLETION_H
+#ifndef TETLAP_APP_CLI_PAGES_COMPLETION_H
+#define TETLAP_APP_CLI_PAGES_COMPLETION_H
 
 #include <stdio.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/run/run_result.h"
+#include "fem/run/result/run_result.h"
 #include "fem/model/compliance/compliance.h"
 
 #include <assert.h>

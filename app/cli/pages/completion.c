@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/cli/completion.h"
+#include "app/cli/pages/completion.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/run/spread.h"
+#include "fem/run/result/spread.h"
 
 #include <assert.h>
 #include <string.h>

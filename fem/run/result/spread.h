@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Time, memory and work of a run over its ranks (base/ranks.h): least, mean and most of each.
-#ifndef TETLAP_FEM_RUN_SPREAD_H
-#define TETLAP_FEM_RUN_SPREAD_H
+#ifndef TETLAP_FEM_RUN_RESULT_SPREAD_H
+#define TETLAP_FEM_RUN_RESULT_SPREAD_H
 
 #include "fem/run/run_state.h"
 

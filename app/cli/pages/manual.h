@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Manual pages for man(1), made from the tables of commands and their options: one for the program and one
 // for each command, as tetlap.1, tetlap-run.1, tetlap-dataset-info.1.
-#ifndef TETLAP_APP_CLI_MANUAL_H
-#define TETLAP_APP_CLI_MANUAL_H
+#ifndef TETLAP_APP_CLI_PAGES_MANUAL_H
+#define TETLAP_APP_CLI_PAGES_MANUAL_H
 
 #include <stdio.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The processor that this runs on, for manifests and benchmarks.
-#ifndef TETLAP_BASE_CPU_H
-#define TETLAP_BASE_CPU_H
+#ifndef TETLAP_BASE_MACHINE_CPU_H
+#define TETLAP_BASE_MACHINE_CPU_H
 
 #include <stdbool.h>
 

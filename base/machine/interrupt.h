@@ -2,8 +2,8 @@
 // Whether this process has been asked to end, by Ctrl-C or SIGTERM. A flag of the process, as signals are:
 // long computations read it, and waits read it again at intervals, since a signal that comes just before a
 // wait does not interrupt it.
-#ifndef TETLAP_BASE_INTERRUPT_H
-#define TETLAP_BASE_INTERRUPT_H
+#ifndef TETLAP_BASE_MACHINE_INTERRUPT_H
+#define TETLAP_BASE_MACHINE_INTERRUPT_H
 
 #include <signal.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks that the formulas of a scene give numbers: their values become positions and forces.
-#ifndef TETLAP_FEM_MODEL_FORMULAS_H
-#define TETLAP_FEM_MODEL_FORMULAS_H
+#ifndef TETLAP_FEM_EFFECT_FORMULAS_H
+#define TETLAP_FEM_EFFECT_FORMULAS_H
 
 #include "fem/model/model.h"
 
