@@ -8,8 +8,8 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
+#include "fem/measure/stress.h"
 #include "fem/output/moments.h"
-#include "fem/output/stress.h"
 
 static const FemRunState *run_of(const AppLoop *loop) {
   return fem_run_session_state(loop->session);

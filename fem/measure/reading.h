@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a probe of the scene (fem/scene/probe.h) reads at a state, and what it has read in a run.
+// What a probe of the scene (fem/scene/probe/probe.h) reads at a state, and what it has read in a run.
 //
 // Its force is what acts on its vertices from outside: contact with friction and viscosity, loads, and what
 // holds or drives them; not gravity and not the body itself. At a face that is fixed it is the reaction, at a
@@ -8,7 +8,7 @@
 #define TETLAP_FEM_MEASURE_READING_H
 
 #include "fem/effect/system.h"
-#include "fem/scene/probe.h"
+#include "fem/scene/probe/probe.h"
 
 // In this order the columns of history.csv.
 typedef struct FemReading {

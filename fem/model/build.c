@@ -182,6 +182,34 @@ static Status add_probes(FemModel *model, const FemMesh *meshes) {
   return STATUS_OK;
 }
 
+static Status check_name(const FemModel *model, const FemLineDef *def) {
+  for (int l = 0; l < model->line_count; l++)
+    if (strcmp(model->lines[l].def->name, def->name) == 0)
+      return status_fail(STATUS_INPUT, "there is another line of that name; give it one of its own");
+  return STATUS_OK;
+}
+
+static Status add_lines(FemModel *model, const FemMesh *meshes) {
+  const FemSceneDef *scene = model->scene;
+  size_t most = 0;
+  for (int b = 0; b < scene->body_count; b++) most += (size_t)scene->bodies[b].line_count;
+  model->lines = memory_zeroed(most, sizeof *model->lines);
+  if (!model->lines) return status_no_memory("the lines");
+  for (int b = 0; b < scene->body_count; b++)
+    for (int i = 0; i < scene->bodies[b].line_count; i++) {
+      const FemLineDef *def = &scene->bodies[b].lines[i];
+      Status status = check_name(model, def);
+      if (!status)
+        status =
+            fem_line_create(&model->lines[model->line_count], def, &meshes[b], model->bodies[b].tet_begin);
+      if (status)
+        return status_prefix(status, "%s: body '%s', line '%s'", fem_scene_where(scene, &def->place).text,
+                             scene->bodies[b].name, def->name);
+      model->line_count++;
+    }
+  return STATUS_OK;
+}
+
 static Status mark_inner(FemModel *model, const FemMesh *meshes) {
   const FemSceneDef *scene = model->scene;
   model->inner = memory_zeroed((size_t)model->vertex_count, 1);
@@ -223,6 +251,7 @@ static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
   TRY(mark_inner(model, meshes));
   TRY(fem_model_parts_measure(model));
   TRY(add_probes(model, meshes));
+  TRY(add_lines(model, meshes));
   TRY(fem_model_divide(model));
   if (!model->share) TRY(fem_model_work_count(model));
   return measure(model, meshes);
@@ -250,6 +279,8 @@ void fem_model_destroy(FemModel *model) {
   memory_free(model->loads);
   for (int i = 0; i < model->probe_count; i++) fem_probe_destroy(&model->probes[i]);
   memory_free(model->probes);
+  for (int i = 0; i < model->line_count; i++) fem_line_destroy(&model->lines[i]);
+  memory_free(model->lines);
   memory_free(model->rest);
   memory_free(model->tets);
   memory_free(model->tet_body);

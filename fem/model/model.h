@@ -10,7 +10,8 @@
 #include "fem/element/quadratic.h"
 #include "fem/model/start.h"
 #include "fem/scene/load.h"
-#include "fem/scene/probe.h"
+#include "fem/scene/probe/line.h"
+#include "fem/scene/probe/probe.h"
 #include "fem/scene/scene.h"
 #include "fem/sparse/share.h"
 
@@ -74,6 +75,8 @@ typedef struct FemModel {
   int load_count;
   FemProbe *probes; //                                                                  (probe_count)
   int probe_count;
+  FemLine *lines; //                                                                    (line_count)
+  int line_count;
   FemShare *share; // which vertices this rank has; NULL: there is one process
   double length;   // the smallest body's bounding box diagonal [m]
   double edge;     // the smallest mean edge of a body [m]

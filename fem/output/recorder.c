@@ -10,10 +10,11 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
+#include "fem/measure/stress.h"
 #include "fem/output/columns.h"
+#include "fem/output/lines.h"
 #include "fem/output/moments.h"
 #include "fem/output/reactions.h"
-#include "fem/output/stress.h"
 #include "fem/output/vtk/vtu.h"
 
 static bool has_column(const FemRecorder *recorder, int column) {
@@ -96,7 +97,8 @@ static Status create(FemRecorder *recorder, const char *directory) {
   TRY(fem_ledger_create(&recorder->ledger, recorder->system));
   TRY(fem_probes_create(&recorder->probes, recorder->system));
   TRY(fem_forces_create(&recorder->forces, recorder->system,
-                        (directory && model->scene->write_vtu) || model->probe_count > 0));
+                        (directory && (model->scene->write_vtu || model->line_count > 0)) ||
+                            model->probe_count > 0));
   if (!directory) return STATUS_OK;
   recorder->writes_vtu = model->scene->write_vtu;
   recorder->writes_history = model->scene->history;
@@ -159,7 +161,8 @@ Status fem_recorder_clear(const FemRecorder *recorder) {
   if (!recorder->directory) return STATUS_OK;
   int frames = file_remove_numbered(recorder->directory, "frame_", ".vtu") +
                file_remove_numbered(recorder->directory, "frame_", ".pvtu");
-  int count = frames + file_remove_numbered(recorder->directory, "obstacles_", ".vtu");
+  int count = frames + file_remove_numbered(recorder->directory, "obstacles_", ".vtu") +
+              file_remove_numbered(recorder->directory, "lines_", ".csv");
   for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
     char *path = file_join(recorder->directory, names[k]);
     if (!path) return status_no_memory("a file name");
@@ -324,7 +327,6 @@ static Status write_frame(FemRecorder *recorder) {
   const FemSystem *system = recorder->system;
   const FemModel *model = system->model;
   const FemState *state = recorder->state;
-  TRY(fem_forces_take_surface(&recorder->forces, state));
   if (recorder->reaction) TRY(fem_reactions_measure(recorder->system, state, NULL, recorder->reaction));
   const ContactStatus *status = recorder->status;
   const int *verdicts[] = {status ? status->predicted : NULL, status ? status->exact : NULL,
@@ -379,6 +381,7 @@ Status fem_recorder_continue(FemRecorder *recorder, JournalMark history, int fra
   if (!recorder->directory) return STATUS_OK;
   if (recorder->writes_history) TRY(fem_history_continue(&recorder->history, history));
   if (recorder->writes_vtu) fem_frames_continue(&recorder->frames, frame_count);
+  recorder->frame_count = frame_count;
   return STATUS_OK;
 }
 
@@ -451,7 +454,11 @@ Status fem_recorder_write(FemRecorder *recorder, const FemColumnSource *source) 
   TRY(find_status(recorder, source->state));
   if (!recorder->directory) return STATUS_OK;
   recorder->state = source->state;
+  if (recorder->writes_vtu || recorder->system->model->line_count > 0)
+    TRY(fem_forces_take_surface(&recorder->forces, source->state));
   if (recorder->writes_vtu) TRY(write_frame(recorder));
+  TRY(fem_lines_write(recorder->system, source->state, recorder->forces.pressure, recorder->directory,
+                      recorder->frame_count++));
   bool is_first = recorder->history.file.end.size == 0;
   if (recorder->writes_history == FEM_HISTORY_FRAMES || (recorder->writes_history && is_first)) {
     TRY(fem_probes_measure(&recorder->probes, source->state, &recorder->forces));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run writes frame by frame: frame_NNNNN.vtu (or .pvtu) with frames.pvd, and history.csv; and the
-// measures that go with a frame. docs/output.md describes every array and column.
+// What a run writes frame by frame: frame_NNNNN.vtu (or .pvtu) with frames.pvd, lines_NNNNN.csv, and
+// history.csv; and the measures that go with a frame. docs/output.md describes every array and column.
 #ifndef TETLAP_FEM_OUTPUT_RECORDER_H
 #define TETLAP_FEM_OUTPUT_RECORDER_H
 
@@ -20,6 +20,7 @@ typedef struct FemRecorder {
   char *directory;   // owned; NULL: nothing is written
   bool writes_vtu;
   FemFrames frames; // where they are written
+  int frame_count;  // of which there is something
   FemHistoryRows writes_history;
   FemHistory history;
   double *row; // one line of the history

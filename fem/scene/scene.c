@@ -42,6 +42,8 @@ static void free_body(FemBodyDef *body) {
     memory_free(body->probes[i].name);
   }
   memory_free(body->probes);
+  for (int i = 0; i < body->line_count; i++) memory_free(body->lines[i].name);
+  memory_free(body->lines);
 }
 
 static void free_obstacle(FemObstacleDef *obstacle) {

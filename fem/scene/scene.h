@@ -106,6 +106,14 @@ typedef struct FemProbeDef {
   char *name;
 } FemProbeDef;
 
+// Points along a straight line, evenly from end to end, that a body carries.
+typedef struct FemLineDef {
+  char *name;
+  double from[3], to[3]; // [m], in the scene, at rest
+  int points;
+  FemScenePlace place;
+} FemLineDef;
+
 // What a part of a body is made of.
 typedef struct FemPartDef {
   FemMaterial material; // the first member
@@ -137,6 +145,8 @@ typedef struct FemBodyDef {
   int inner_count;
   FemProbeDef *probes; //                                     (probe_count)
   int probe_count;
+  FemLineDef *lines; //                                       (line_count)
+  int line_count;
   FemScenePlace place;
 } FemBodyDef;
 

@@ -22,6 +22,22 @@ static const SceneSection probe = {.help = "output for a part of a body",
                                    .one_of = "box halfspace radius normal group all",
                                    PLACE(FemProbeDef, select.place)};
 
+static const SceneKey line_keys[] = {
+    {"name", SCENE_LABEL, AT(FemLineDef, name), .required = "middle", .help = "its name in the file"},
+    {"from", SCENE_VECTOR, AT(FemLineDef, from), .unit = "m", .required = "[0, 0, 0]",
+     .help = "the first point, as placed, at rest"},
+    {"to", SCENE_VECTOR, AT(FemLineDef, to), .unit = "m", .required = "[0, 0, 0.1]",
+     .help = "the last; points outside go to the surface if that is within a fifth of an element's edge, "
+             "others are left out"},
+    {"points", SCENE_INTEGER, AT(FemLineDef, points), .range = "[2, 100000]", .fallback = "51",
+     .help = "evenly from one end to the other"},
+    {0},
+};
+static const SceneSection line = {.help = "output along a straight line through a body or on its surface",
+                                  .size = sizeof(FemLineDef),
+                                  .keys = line_keys,
+                                  PLACE(FemLineDef, place)};
+
 _Static_assert(offsetof(FemPartDef, material) == 0, "the keys of a material count from it");
 
 // Whole tetrahedra: what lies on a surface is none.
@@ -87,6 +103,10 @@ static const SceneKey body_keys[] = {
      .help =
          "parts of it whose force, moment, mean pressure, area and displacement are columns of history.csv "
          "and in the summary"},
+    {"lines", SCENE_LIST, AT(FemBodyDef, lines), .section = &line,
+     .count_offset = offsetof(FemBodyDef, line_count),
+     .help = "lines that it carries: displacements, stresses and contact pressure of a line's points in each "
+             "frame are in lines_NNNNN.csv"},
     {0},
 };
 const SceneSection app_scene_keys_body = {.help = "an elastic body",

@@ -256,6 +256,11 @@ static void check_settings(const FemSceneDef *scene) {
   ck_assert_int_eq(lid->kind, FEM_SELECT_NORMAL);
   ck_vector(lid->normal, 0, 1, 0);
   ck_assert_double_eq(lid->degrees, 20);
+  ck_assert_int_eq(scene->bodies[1].line_count, 1);
+  ck_assert_str_eq(scene->bodies[1].lines[0].name, "seam");
+  ck_vector(scene->bodies[1].lines[0].from, 0, 1, 2);
+  ck_vector(scene->bodies[1].lines[0].to, 3, 4, 5);
+  ck_assert_int_eq(scene->bodies[1].lines[0].points, 7);
   ck_assert_int_eq(scene->bodies[1].inner_count, 2);
   ck_assert_str_eq(scene->bodies[1].inner[0].select.group, "glue");
   ck_assert_int_eq(scene->bodies[1].inner[1].select.kind, FEM_SELECT_BOX);

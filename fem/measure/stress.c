@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/output/stress.h"
+#include "fem/measure/stress.h"
 
 #include <math.h>
 #include <string.h>

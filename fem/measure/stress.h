@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The stress of an element at a state, by all effects that give it one.
-#ifndef TETLAP_FEM_OUTPUT_STRESS_H
-#define TETLAP_FEM_OUTPUT_STRESS_H
+#ifndef TETLAP_FEM_MEASURE_STRESS_H
+#define TETLAP_FEM_MEASURE_STRESS_H
 
 #include "fem/effect/system.h"
 

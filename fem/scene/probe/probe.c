@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/scene/probe.h"
+#include "fem/scene/probe/probe.h"
 
 #include <stdbool.h>
 

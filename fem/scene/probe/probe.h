@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A part of a body whose force and motion the scene asks for: vertices, and the triangles of its surface all
 // of whose corners are among them.
-#ifndef TETLAP_FEM_SCENE_PROBE_H
-#define TETLAP_FEM_SCENE_PROBE_H
+#ifndef TETLAP_FEM_SCENE_PROBE_PROBE_H
+#define TETLAP_FEM_SCENE_PROBE_PROBE_H
 
 #include "fem/mesh/mesh.h"
 #include "fem/scene/scene.h"
