@@ -278,11 +278,7 @@ static Status parse_sum(Parser *parser) {
   }
 }
 
-Status expression_parse(Expression *expression, const char *text) {
-  return expression_parse_of(expression, "t", text);
-}
-
-Status expression_parse_of(Expression *expression, const char *argument, const char *text) {
+Status expression_parse(Expression *expression, const char *argument, const char *text) {
   *expression = (Expression){.count = 0};
   if (strlen(text) >= sizeof expression->text)
     return status_fail(STATUS_INPUT, "a formula has at most %d characters; give a table",

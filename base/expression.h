@@ -35,10 +35,9 @@ typedef struct ExpressionValue {
   double curve;       // d²f/dt²; of a kink nothing
 } ExpressionValue;
 
-// STATUS_INPUT: the message says at which character (from 1) and what was expected there.
-Status expression_parse(Expression *expression, const char *text);
-// The same of a formula whose argument has another name than t.
-Status expression_parse_of(Expression *expression, const char *argument, const char *text);
+// `argument`: its name in the text. STATUS_INPUT: the message says at which character (from 1) and what was
+// expected there.
+Status expression_parse(Expression *expression, const char *argument, const char *text);
 
 // Whether t does not occur in it.
 bool expression_is_constant(const Expression *expression);

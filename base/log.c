@@ -20,7 +20,8 @@ LogLevel log_level(void) {
   return level;
 }
 
-bool log_has_colour(void) {
+// Colours on a terminal unless NO_COLOR is set (no-color.org).
+static bool has_colour(void) {
   const char *no_color = getenv("NO_COLOR");
   return isatty(STDERR_FILENO) && !(no_color && no_color[0]);
 }
@@ -28,7 +29,7 @@ bool log_has_colour(void) {
 static void write_line(LogLevel at, const char *label, const char *colour, const char *format, va_list args) {
   if (level < at) return;
   log_progress_end();
-  if (log_has_colour())
+  if (has_colour())
     fprintf(stderr, "%s%s\033[0m", colour, label);
   else
     fputs(label, stderr);

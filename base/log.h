@@ -15,8 +15,6 @@ typedef enum LogLevel {
 
 void log_set_level(LogLevel level);
 LogLevel log_level(void);
-// Colours on a terminal unless NO_COLOR is set (no-color.org).
-bool log_has_colour(void);
 
 void log_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));

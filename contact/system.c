@@ -398,7 +398,8 @@ void contact_system_add_resting(const ContactSystem *system, double *force) {
 
 Status contact_system_stiffness(ContactSystem *system, const ContactEvaluation *evaluation,
                                 const ContactStiffnessSink *sink) {
-  return contact_system_stiffness_of(system, evaluation, CONTACT_ALL_INTERFACES, sink);
+  return contact_stiffness_add(&system->stiffness, &system->layout, evaluation, CONTACT_ALL_INTERFACES, NULL,
+                               contact_system_sink(system, sink));
 }
 
 void contact_system_add_force_of(const ContactSystem *system, const ContactEvaluation *evaluation,
@@ -416,12 +417,6 @@ double contact_system_energy_of(const ContactEvaluation *evaluation, int interfa
   for (int k = 0; k < evaluation->pair_count; k++)
     if (evaluation->pairs[k].interface == interface) energy += evaluation->fields[k].energy;
   return energy;
-}
-
-Status contact_system_stiffness_of(ContactSystem *system, const ContactEvaluation *evaluation, int interface,
-                                   const ContactStiffnessSink *sink) {
-  return contact_stiffness_add(&system->stiffness, &system->layout, evaluation, interface, NULL,
-                               contact_system_sink(system, sink));
 }
 
 Status contact_system_turn(ContactSystem *system, const ContactEvaluation *evaluation, int interface,

@@ -118,12 +118,10 @@ Status contact_system_slopes(ContactSystem *system, const ContactEvaluation *eva
 Status contact_system_pull(ContactSystem *system, const ContactEvaluation *evaluation, int interface,
                            const double *forces, double weight, double *answers);
 
-// The same of one interface, none at rest: its forces, its energy, its part of the stiffness.
+// The same of one interface, none at rest: its forces, its energy.
 void contact_system_add_force_of(const ContactSystem *system, const ContactEvaluation *evaluation,
                                  int interface, double *force);
 double contact_system_energy_of(const ContactEvaluation *evaluation, int interface); // [J]
-Status contact_system_stiffness_of(ContactSystem *system, const ContactEvaluation *evaluation, int interface,
-                                   const ContactStiffnessSink *sink);
 
 // Calls `visit` for every clique of vertices that the stiffness may couple, pairs that are apart by less than
 // `reach` [m] included, so that a matrix pattern can be laid out ahead.

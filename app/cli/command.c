@@ -45,7 +45,8 @@ static void print_heading(const AppHeading *heading, const AppCommand *child, FI
     if (heading->first == child) fprintf(stream, "%s\n", heading->text);
 }
 
-void app_cli_command_print(const AppCommand *group, const char *called, FILE *stream) {
+// The usage line of a group and the list of its children.
+static void print_group(const AppCommand *group, const char *called, FILE *stream) {
   fprintf(stream, "Usage: %s ", called);
   for (const char *letter = group->child_word; *letter; letter++) fputc(*letter - 'a' + 'A', stream);
   fprintf(stream, " [OPTION...]\n%s\n\n", group->doc);
@@ -123,11 +124,11 @@ static int fail_unknown(const AppCommand *group, int argument_count, char **argu
 
 static int run_group(const AppCommand *group, int argument_count, char **arguments) {
   if (argument_count < 2) {
-    app_cli_command_print(group, arguments[0], stderr);
+    print_group(group, arguments[0], stderr);
     return status_exit_code(STATUS_USAGE);
   }
   if (text_lists("-h -? --help", arguments[1])) {
-    app_cli_command_print(group, arguments[0], stdout);
+    print_group(group, arguments[0], stdout);
     return 0;
   }
   const AppCommand *child = app_cli_command_find(group, arguments[1]);

@@ -57,9 +57,6 @@ int app_cli_command_run(const AppCommand *command, int argument_count, char **ar
 // How a command ends: says what went wrong, if anything did, and gives the program's exit code.
 int app_cli_command_end(Status status);
 
-// The usage line of a group and the list of its children.
-void app_cli_command_print(const AppCommand *group, const char *called, FILE *stream);
-
 // A message for `word` where a child of the group is expected: its place, and the nearest call that would be
 // right. The arguments behind it are repeated there.
 void app_cli_command_explain(const AppCommand *group, const char *called, int argument_count,

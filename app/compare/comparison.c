@@ -106,7 +106,8 @@ static int audited_states(const AppComparison *comparison) {
   return count;
 }
 
-void app_comparison_tell_audit(const AppComparison *comparison, char *text, size_t size) {
+// Why there is no audit, or that it is of few states; empty: neither.
+static void tell_audit(const AppComparison *comparison, char *text, size_t size) {
   int states = audited_states(comparison);
   const char *reference = comparison->models[comparison->reference].name;
   *text = 0;
@@ -252,7 +253,7 @@ static void record_series(const AppAudit *audit, Record *record) {
 
 void app_comparison_record(const AppComparison *comparison, const char *scene_path, RecordList *list) {
   char told[512];
-  app_comparison_tell_audit(comparison, told, sizeof told);
+  tell_audit(comparison, told, sizeof told);
   for (int m = 0; m < comparison->model_count; m++) {
     const AppComparisonModel *model = &comparison->models[m];
     Row row = row_of(comparison, m);
@@ -306,7 +307,7 @@ static Status print_audit(const AppComparison *comparison, FILE *stream) {
   char told[512];
   AuditLine lines[APP_MAX_MODELS * APP_AUDIT_KIND_COUNT];
   int count = 0;
-  app_comparison_tell_audit(comparison, told, sizeof told);
+  tell_audit(comparison, told, sizeof told);
   if (*told) fprintf(stream, "audit: %s%s\n", audited_states(comparison) ? "" : "–; ", told);
   if (audited_states(comparison) == 0) return STATUS_OK;
   fprintf(

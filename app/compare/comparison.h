@@ -92,8 +92,6 @@ Status app_comparison_audit(AppComparison *comparison, const FemRunProgress *pro
 
 // After all runs: fills what the audits come to. STATUS_MEMORY.
 Status app_comparison_conclude(AppComparison *comparison);
-// Why there is no audit, or that it is of few states; empty: neither.
-void app_comparison_tell_audit(const AppComparison *comparison, char *text, size_t size);
 
 // One object a model. `list` is the top of compare.json.
 void app_comparison_record(const AppComparison *comparison, const char *scene_path, RecordList *list);

@@ -13,7 +13,8 @@
 
 enum { SIZE = OVERLAP_PAIR_SIZE };
 
-const double app_evaluation_bin_ends[APP_EVALUATION_BINS] = {0.0067, 0.0133, 0.02};
+// Upper ends of the paper's bins of V: small, medium, large.
+static const double bin_ends[APP_EVALUATION_BINS] = {0.0067, 0.0133, 0.02};
 
 static const uint64_t SYMMETRY_SEED = 0x5e3d;
 static const double DEGREES = 57.29577951308232;
@@ -134,7 +135,7 @@ static Status block_evaluate(Block *block, const OverlapModel *model) {
 
 static int bin_of(double volume) {
   int bin = 0;
-  while (bin < APP_EVALUATION_BINS - 1 && volume >= app_evaluation_bin_ends[bin]) bin++;
+  while (bin < APP_EVALUATION_BINS - 1 && volume >= bin_ends[bin]) bin++;
   return bin;
 }
 

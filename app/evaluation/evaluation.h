@@ -23,9 +23,6 @@ enum {
   APP_EVALUATION_CONFIDENCES = 10, // bins of the predicted probability
 };
 
-// Upper ends of the paper's bins of V: small, medium, large.
-extern const double app_evaluation_bin_ends[APP_EVALUATION_BINS];
-
 // What a set of pairs without anything to measure gives is NaN.
 typedef struct AppEvaluationKind {
   long long count;

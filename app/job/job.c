@@ -173,12 +173,13 @@ const char *app_job_overlap(const AppJob *job) {
   return job->overlap[0] ? job->overlap : NULL;
 }
 
-const char *app_job_potential(const AppJob *job) {
+static const char *potential_of(const AppJob *job) {
   const FemContactDef *contact = &job->scene.contact;
   return contact->is_on ? contact_def_potential_name(contact->potential) : NULL;
 }
 
-const char *app_job_weights(const AppJob *job, char path[PATH_MAX]) {
+// The absolute path of the overlap model's weights file, if it is one of the user's.
+static const char *weights_of(const AppJob *job, char path[PATH_MAX]) {
   char source[PATH_MAX];
   return app_scene_overlap_source(&job->scene, source) && app_model_names_locate(source, path) ? path : NULL;
 }
@@ -196,9 +197,9 @@ static void log_stiffness(const FemModel *model) {
 void app_job_log_contact(const AppJob *job) {
   char path[PATH_MAX];
   if (!job->scene.contact.is_on) return;
-  const char *weights = app_job_weights(job, path);
+  const char *weights = weights_of(job, path);
   log_info("contact: overlap model %s%s%s%s, potential %s", app_job_overlap(job), weights ? " (" : "",
-           weights ? weights : "", weights ? ")" : "", app_job_potential(job));
+           weights ? weights : "", weights ? ")" : "", potential_of(job));
   log_stiffness(&job->model);
 }
 
@@ -210,8 +211,8 @@ Record *app_job_summary(const AppJob *job, const FemRunResult *result, Status st
   record_text(summary, "title", job->scene.title);
   char weights[PATH_MAX];
   record_text(summary, "overlap", app_job_overlap(job));
-  record_text(summary, "weights", app_job_weights(job, weights));
-  record_text(summary, "potential", app_job_potential(job));
+  record_text(summary, "weights", weights_of(job, weights));
+  record_text(summary, "potential", potential_of(job));
   record_text(summary, "outcome", fem_run_outcome(result, status));
   if (status) record_text(summary, "message", status_message());
   if (!status && result->trouble.of[FEM_TROUBLE_PASSED].steps > 0) {

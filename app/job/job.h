@@ -52,11 +52,8 @@ char *app_job_default_directory(const char *scene_path, const char *ending);
 void app_job_prepare(const AppJobOptions *options);
 const volatile sig_atomic_t *app_job_stop_flag(void);
 
-// What the overlap model is called, its potential, and the absolute path of its weights file, if it is one of
-// the user's; each NULL where there is none.
+// What the overlap model is called; NULL: there is none.
 const char *app_job_overlap(const AppJob *job);
-const char *app_job_potential(const AppJob *job);
-const char *app_job_weights(const AppJob *job, char path[PATH_MAX]);
 
 // A line of the log: the overlap model, its weights file, the potential. Nothing without contact.
 void app_job_log_contact(const AppJob *job);

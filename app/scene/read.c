@@ -19,6 +19,7 @@ static void *field_of(void *self, size_t offset) {
 // Sections.
 
 static Status read_section(const SceneSection *section, const SceneNode *node, void *self);
+static Status read_defaults(const SceneSection *section, void *self);
 
 static Status read_list(const SceneKey *key, const SceneNode *node, void *self) {
   if (node->kind != SCENE_NODE_LIST) return app_scene_value_fail(key, node, "");
@@ -34,7 +35,7 @@ static Status read_list(const SceneKey *key, const SceneNode *node, void *self) 
       SceneKey expected = {.type = SCENE_SECTION};
       return app_scene_value_fail(&expected, item, "");
     }
-    TRY(app_scene_read_defaults(key->section, items));
+    TRY(read_defaults(key->section, items));
     TRY(read_section(key->section, item, items));
   }
   return STATUS_OK;
@@ -198,11 +199,12 @@ static Status read_default(const SceneKey *key, void *self) {
   return status;
 }
 
-Status app_scene_read_defaults(const SceneSection *section, void *self) {
+// Fills the struct that a section describes, zeroed before, with the defaults of its keys.
+static Status read_defaults(const SceneSection *section, void *self) {
   const SceneKey *key;
   for (int i = 0; (key = app_scene_keys_at(section, i)); i++) {
     if (key->type == SCENE_SECTION)
-      TRY(app_scene_read_defaults(key->section, field_of(self, key->offset)));
+      TRY(read_defaults(key->section, field_of(self, key->offset)));
     else if (key->fallback)
       TRY(read_default(key, self));
     else if (key->type == SCENE_NUMBER)
@@ -232,7 +234,7 @@ void app_scene_read_destroy_defaults(const SceneSection *section, void *defaults
 Status app_scene_read_create_defaults(const SceneSection *section, void **defaults) {
   *defaults = memory_zeroed(1, section->size);
   if (!*defaults) return status_no_memory("the defaults of a scene");
-  Status status = app_scene_read_defaults(section, *defaults);
+  Status status = read_defaults(section, *defaults);
   if (!status) return STATUS_OK;
   app_scene_read_destroy_defaults(section, *defaults);
   *defaults = NULL;
@@ -248,7 +250,7 @@ static Status read_tree(const char *path, const SceneNode *root, FemSceneDef *sc
   }
   scene->path = memory_copy(path, strlen(path) + 1, 1);
   if (!scene->path) return status_no_memory("the scene");
-  TRY(app_scene_read_defaults(&app_scene_keys_root, scene));
+  TRY(read_defaults(&app_scene_keys_root, scene));
   TRY(read_section(&app_scene_keys_root, root, scene));
   return app_scene_check(root, scene);
 }
@@ -277,7 +279,7 @@ static Status read_root(const SceneNode *root, const SceneSection *section, void
     SceneKey expected = {.type = SCENE_SECTION};
     return app_scene_value_fail(&expected, root, "");
   }
-  TRY(app_scene_read_defaults(section, self));
+  TRY(read_defaults(section, self));
   return read_section(section, root, self);
 }
 

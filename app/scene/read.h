@@ -25,9 +25,6 @@ Status app_scene_read_text(const char *path, const char *text, size_t size, FemS
 Status app_scene_read_section(const char *path, const char *const *overrides, int override_count,
                               const SceneSection *section, void *self);
 
-// Fills the struct that a section describes, zeroed before, with the defaults of its keys.
-Status app_scene_read_defaults(const SceneSection *section, void *self);
-
 // A struct filled so, for those who compare with the defaults or print them; owned by the caller.
 Status app_scene_read_create_defaults(const SceneSection *section, void **defaults);
 void app_scene_read_destroy_defaults(const SceneSection *section, void *defaults);

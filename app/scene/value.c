@@ -223,7 +223,7 @@ static Status read_formula(const SceneKey *key, const SceneNode *node, Expressio
   if (!expression) return status_no_memory("the scene");
   memory_free(*field);
   *field = expression;
-  bool is_parsed = expression_parse_of(expression, app_scene_keys_argument(key), node->text) == STATUS_OK;
+  bool is_parsed = expression_parse(expression, app_scene_keys_argument(key), node->text) == STATUS_OK;
   expression->line = node->line;
   expression->column = node->column;
   if (is_parsed) return STATUS_OK;

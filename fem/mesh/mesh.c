@@ -68,10 +68,6 @@ Status fem_mesh_copy(FemMesh *copy, const FemMesh *mesh) {
   return status_no_memory("a copy of a mesh");
 }
 
-FemPlacement fem_mesh_placement_identity(void) {
-  return (FemPlacement){.scale = {1, 1, 1}, .axis = {0, 0, 1}};
-}
-
 // Sine and cosine of an angle in degrees, exact at quarter turns.
 static void sine_cosine(double degrees, double *sine, double *cosine) {
   double reduced = remainder(degrees, 360), quarters = nearbyint(reduced / 90);

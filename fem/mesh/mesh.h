@@ -54,7 +54,6 @@ typedef struct FemPlacement {
   double translate[3]; // [m]
 } FemPlacement;
 
-FemPlacement fem_mesh_placement_identity(void);
 // The rotated axes of space: row k is the image of axis k.
 void fem_mesh_placement_axes(const FemPlacement *placement, double axes[3][3]);
 
@@ -77,11 +76,6 @@ typedef struct FemMeshOptions {
 // duplicate elements, indices out of range, not finite.
 // `options` and `repairs` may be NULL.
 Status fem_mesh_read(FemMesh *mesh, const char *path, const FemMeshOptions *options, FemMeshRepairs *repairs);
-
-// Takes copies of raw arrays (0-based), repairs and validates as above. `origin` names the source in
-// messages. `repairs` may be NULL.
-Status fem_mesh_from_arrays(FemMesh *mesh, const char *origin, int vertex_count, const double *positions,
-                            int tet_count, const int *tets, FemMeshRepairs *repairs);
 
 // Applies a placement; a mirroring scale keeps orientation positive. Quarter turns are exact. STATUS_INPUT,
 // the mesh unchanged: a zero or non-finite scale, an angle about no axis, a result that is not finite.

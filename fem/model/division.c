@@ -48,7 +48,8 @@ static Status make_graph(const FemPattern *pattern, RanksGraph *graph) {
   return STATUS_OK;
 }
 
-Status fem_model_division_find(const FemModel *model, int rank_count, int *owner) {
+// The rank of each vertex among so many ranks; obstacles' the first: owner (model->vertex_count).
+static Status find_owners(const FemModel *model, int rank_count, int *owner) {
   FemPattern *pattern = NULL;
   for (int v = 0; v < model->vertex_count; v++) owner[v] = 0;
   RanksGraph graph = {0};
@@ -70,7 +71,7 @@ Status fem_model_divide(FemModel *model) {
   TRY(ranks()->worst(status));
   share->rank = ranks()->number;
   share->rank_count = ranks()->count;
-  if (ranks_is_first()) status = fem_model_division_find(model, share->rank_count, share->owner);
+  if (ranks_is_first()) status = find_owners(model, share->rank_count, share->owner);
   TRY(ranks()->worst(status));
   ranks()->tell(share->owner, (size_t)model->vertex_count * sizeof *share->owner);
   return STATUS_OK;
@@ -127,7 +128,7 @@ Status fem_model_division_plan(const FemModel *model, int rank_count, FemDivisio
   int *seen = memory_zeroed(vertices, sizeof *seen);
   *plan = (FemDivisionPlan){.rank_count = rank_count};
   Status status = share.owner && seen ? STATUS_OK : status_no_memory("the division among ranks");
-  if (!status) status = fem_model_division_find(model, rank_count, share.owner);
+  if (!status) status = find_owners(model, rank_count, share.owner);
   if (!status) make_plan(model, &share, seen, plan);
   memory_free(share.owner), memory_free(seen);
   return status;

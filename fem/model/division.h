@@ -10,9 +10,6 @@
 Status fem_model_divide(FemModel *model);
 void fem_model_division_destroy(FemModel *model);
 
-// The rank of each vertex among so many ranks; obstacles' the first: owner (model->vertex_count).
-Status fem_model_division_find(const FemModel *model, int rank_count, int *owner);
-
 // What ranks would have of a model, least and most of any.
 typedef struct FemDivisionPlan {
   int rank_count;

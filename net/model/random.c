@@ -21,7 +21,7 @@ NetRandom net_random_seeded(uint64_t seed, uint64_t stream) {
   return random;
 }
 
-uint64_t net_random_bits(NetRandom *random) {
+static uint64_t random_bits(NetRandom *random) {
   uint64_t *s = random->state;
   uint64_t bits = rotate(s[0] + s[3], 23) + s[0];
   uint64_t t = s[1] << 17;
@@ -32,7 +32,7 @@ uint64_t net_random_bits(NetRandom *random) {
 }
 
 double net_random_uniform(NetRandom *random) {
-  return (double)(net_random_bits(random) >> 11) * 0x1p-53;
+  return (double)(random_bits(random) >> 11) * 0x1p-53;
 }
 
 double net_random_between(NetRandom *random, double low, double high) {

@@ -11,7 +11,6 @@ typedef struct NetRandom {
 } NetRandom;
 
 NetRandom net_random_seeded(uint64_t seed, uint64_t stream);
-uint64_t net_random_bits(NetRandom *random);
 double net_random_uniform(NetRandom *random);                          // [0, 1), 53 bits
 double net_random_between(NetRandom *random, double low, double high); // [low, high)
 double net_random_normal(NetRandom *random);                           // mean 0, variance 1

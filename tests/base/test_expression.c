@@ -9,7 +9,7 @@
 
 static ExpressionValue at(const char *text, double t) {
   Expression expression;
-  ck_assert_ok(expression_parse(&expression, text));
+  ck_assert_ok(expression_parse(&expression, "t", text));
   return expression_eval(&expression, t);
 }
 
@@ -69,19 +69,19 @@ END_TEST
 
 START_TEST(an_argument_may_have_another_name) {
   Expression expression;
-  ck_assert_ok(expression_parse_of(&expression, "d", "2*d^3"));
+  ck_assert_ok(expression_parse(&expression, "d", "2*d^3"));
   ExpressionValue value = expression_eval(&expression, 2);
   ck_assert_double_eq(value.value, 16);
   ck_assert_double_eq(value.rate, 24);
   ck_assert_double_eq(value.curve, 24);
-  ck_assert_int_eq(expression_parse_of(&expression, "d", "2*t"), STATUS_INPUT);
+  ck_assert_int_eq(expression_parse(&expression, "d", "2*t"), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "expected d, pi"));
 }
 END_TEST
 
 static void refuse(const char *text, const char *expected) {
   Expression expression;
-  ck_assert_int_eq(expression_parse(&expression, text), STATUS_INPUT);
+  ck_assert_int_eq(expression_parse(&expression, "t", text), STATUS_INPUT);
   ck_assert_msg(strstr(status_message(), expected), "%s: %s", text, status_message());
 }
 
@@ -114,7 +114,7 @@ END_TEST
 
 static double kink(const char *text, double t) {
   Expression expression;
-  ck_assert_ok(expression_parse(&expression, text));
+  ck_assert_ok(expression_parse(&expression, "t", text));
   return expression_next_kink(&expression, t);
 }
 

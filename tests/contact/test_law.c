@@ -24,7 +24,7 @@ static ContactLaw law_of(int kind, Expression *formula) {
   case ROWS:
     return (ContactLaw){.kind = CONTACT_LAW_TABLE, .table = TABLE, .table_count = 5};
   default:
-    ck_assert_ok(expression_parse_of(formula, "d", "1e3*d + 2e4*d^2"));
+    ck_assert_ok(expression_parse(formula, "d", "1e3*d + 2e4*d^2"));
     return (ContactLaw){.kind = CONTACT_LAW_FORMULA, .formula = formula};
   }
 }
@@ -68,7 +68,7 @@ static void refuse(const ContactLaw *law, const char *expected) {
 
 static void refuse_formula(const char *text, const char *expected) {
   Expression formula;
-  ck_assert_ok(expression_parse_of(&formula, "d", text));
+  ck_assert_ok(expression_parse(&formula, "d", text));
   refuse(&(ContactLaw){.kind = CONTACT_LAW_FORMULA, .formula = &formula}, expected);
 }
 

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../fem/mesh/from_arrays.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/mesh/mesh.h"
@@ -108,7 +109,7 @@ static void run_arrays(const uint8_t *data, size_t size) {
   data += part, size -= part;
   for (size_t i = 0; i < 4 * tets && i < size; i++) corners[i] = (int8_t)data[i];
   FemMesh mesh;
-  Status status = fem_mesh_from_arrays(&mesh, "fuzz", (int)vertices, positions, (int)tets, corners, NULL);
+  Status status = mesh_from_arrays(&mesh, "fuzz", (int)vertices, positions, (int)tets, corners, NULL);
   if (status)
     check_refusal(status);
   else

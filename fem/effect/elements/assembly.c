@@ -56,7 +56,8 @@ static int lanes_of(const FemPacks *packs, int p) {
   return packs->is_quadratic ? packs->quadratics[p].count : packs->packs[p].count;
 }
 
-Status fem_assembly_couple(const FemAssembly *assembly, FemPattern *pattern, int *has_grown) {
+// Each element couples its nodes.
+static Status couple(const FemAssembly *assembly, FemPattern *pattern, int *has_grown) {
   for (int k = 0; k < 2; k++)
     for (int p = 0; p < assembly->packs[k].pack_count; p++)
       for (int l = 0; l < lanes_of(&assembly->packs[k], p); l++)
@@ -202,4 +203,43 @@ double fem_assembly_sum(FemAssembly *assembly, const FemState *state, const FemA
     for (int chunk = 0; chunk < packs->chunk_count; chunk++) sum += assembly->partial[k][chunk];
   }
   return sum;
+}
+
+// ---- Operations of an effect.
+
+Status fem_assembly_effect_create(void **self, const FemModel *model,
+                                  bool (*takes)(const FemModelPart *part)) {
+  FemAssembly *assembly = memory_zeroed(1, sizeof *assembly);
+  if (!assembly) return status_no_memory("the elements");
+  Status status = fem_assembly_create(assembly, model, takes);
+  if (status) {
+    fem_assembly_effect_destroy(assembly);
+    return status;
+  }
+  *self = assembly;
+  return STATUS_OK;
+}
+
+Status fem_assembly_effect_keep(void **self, void **old) {
+  *self = *old;
+  *old = NULL;
+  return STATUS_OK;
+}
+
+Status fem_assembly_effect_couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
+  (void)state;
+  return couple(self, pattern, has_grown);
+}
+
+bool fem_assembly_effect_is_linear(void *self) {
+  return fem_model_has_linear_materials(((const FemAssembly *)self)->model);
+}
+
+size_t fem_assembly_effect_bytes(const void *self) {
+  return memory_held(self) + fem_assembly_bytes(self);
+}
+
+void fem_assembly_effect_destroy(void *self) {
+  fem_assembly_destroy(self);
+  memory_free(self);
 }

@@ -51,8 +51,6 @@ void fem_assembly_borrow(FemAssembly *assembly, FemAssembly *from);
 void fem_assembly_destroy(FemAssembly *assembly);
 size_t fem_assembly_bytes(const FemAssembly *assembly); // on the heap
 
-// Each element couples its nodes.
-Status fem_assembly_couple(const FemAssembly *assembly, FemPattern *pattern, int *has_grown);
 void fem_assembly_add_forces(const FemAssembly *assembly, const FemState *state,
                              const FemAssemblyKernels *kernels, double *force);
 // Looks up the slots first if the matrix has been laid out anew (the first time allocates them).
@@ -60,5 +58,15 @@ Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state,
                                  const FemAssemblyKernels *kernels, double stiffness_scale,
                                  double damping_scale, FemMatrix *matrix);
 double fem_assembly_sum(FemAssembly *assembly, const FemState *state, const FemAssemblyKernels *kernels);
+
+// Operations of an effect that is an assembly, as FemEffectOps has them: nothing of it depends on former
+// states, and the matrix couples the nodes of each element.
+Status fem_assembly_effect_create(void **self, const FemModel *model,
+                                  bool (*takes)(const FemModelPart *part));
+Status fem_assembly_effect_keep(void **self, void **old); // create_again
+Status fem_assembly_effect_couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown);
+bool fem_assembly_effect_is_linear(void *self); // its materials are
+size_t fem_assembly_effect_bytes(const void *self);
+void fem_assembly_effect_destroy(void *self);
 
 #endif

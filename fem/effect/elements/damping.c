@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Stiffness-proportional damping of the strain rate; rigid motion goes undamped (fem/element/element.h). Only
 // materials with β > 0 or a viscosity take part.
-#include "base/memory.h"
 #include "fem/effect/elements/assembly.h"
 #include "fem/effect/system.h"
 
@@ -23,21 +22,8 @@ static bool is_damped(const FemModelPart *part) {
   return part->damping > 0 || part->material.viscosity > 0 || part->material.bulk_viscosity > 0;
 }
 
-static void destroy(void *self) {
-  fem_assembly_destroy(self);
-  memory_free(self);
-}
-
 static Status create(void **self, const FemModel *model) {
-  FemAssembly *assembly = memory_zeroed(1, sizeof *assembly);
-  if (!assembly) return status_no_memory("damping");
-  Status status = fem_assembly_create(assembly, model, is_damped);
-  if (status) {
-    destroy(assembly);
-    return status;
-  }
-  *self = assembly;
-  return STATUS_OK;
+  return fem_assembly_effect_create(self, model, is_damped);
 }
 
 // Where all elastic elements are damped, the elements are those of elasticity.
@@ -45,18 +31,6 @@ static Status connect(void *self, const FemSystem *system) {
   FemAssembly *elasticity = fem_system_effect(system, &fem_effect_elasticity);
   if (elasticity) fem_assembly_borrow(self, elasticity);
   return STATUS_OK;
-}
-
-// Nothing of it depends on former states.
-static Status create_again(void **self, void **old) {
-  *self = *old;
-  *old = NULL;
-  return STATUS_OK;
-}
-
-static Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
-  (void)state;
-  return fem_assembly_couple(self, pattern, has_grown);
 }
 
 static void pack_force(const FemAssemblyPack *pack, FemLanesRow *force) {
@@ -116,14 +90,6 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   return STATUS_OK;
 }
 
-static bool is_linear(void *self) {
-  return fem_model_has_linear_materials(((const FemAssembly *)self)->model);
-}
-
-static size_t bytes(const void *self) {
-  return memory_held(self) + fem_assembly_bytes(self);
-}
-
 const FemEffectOps fem_effect_damping = {
     .name = "damping",
     .help = "stiffness-proportional damping and viscosity, by the strain rate",
@@ -131,13 +97,13 @@ const FemEffectOps fem_effect_damping = {
     .is_divided = true,
     .is_wanted = is_wanted,
     .create = create,
-    .create_again = create_again,
+    .create_again = fem_assembly_effect_keep,
     .connect = connect,
-    .couple = couple,
+    .couple = fem_assembly_effect_couple,
     .add_force = add_force,
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
-    .is_linear = is_linear,
-    .bytes = bytes,
-    .destroy = destroy,
+    .is_linear = fem_assembly_effect_is_linear,
+    .bytes = fem_assembly_effect_bytes,
+    .destroy = fem_assembly_effect_destroy,
 };

@@ -1,39 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Elasticity: every element's stored energy by its material's law.
-#include "base/memory.h"
 #include "fem/effect/elements/assembly.h"
 
 static bool is_wanted(const FemSceneDef *scene) {
   return scene->body_count > 0;
 }
 
-static void destroy(void *self) {
-  fem_assembly_destroy(self);
-  memory_free(self);
-}
-
 static Status create(void **self, const FemModel *model) {
-  FemAssembly *assembly = memory_zeroed(1, sizeof *assembly);
-  if (!assembly) return status_no_memory("elasticity");
-  Status status = fem_assembly_create(assembly, model, NULL);
-  if (status) {
-    destroy(assembly);
-    return status;
-  }
-  *self = assembly;
-  return STATUS_OK;
-}
-
-// Nothing of it depends on former states.
-static Status create_again(void **self, void **old) {
-  *self = *old;
-  *old = NULL;
-  return STATUS_OK;
-}
-
-static Status couple(void *self, const FemState *state, FemPattern *pattern, int *has_grown) {
-  (void)state;
-  return fem_assembly_couple(self, pattern, has_grown);
+  return fem_assembly_effect_create(self, model, NULL);
 }
 
 static FemQuadraticLaw law_of(const FemModelPart *part) {
@@ -88,26 +62,18 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   return STATUS_OK;
 }
 
-static bool is_linear(void *self) {
-  return fem_model_has_linear_materials(((const FemAssembly *)self)->model);
-}
-
-static size_t bytes(const void *self) {
-  return memory_held(self) + fem_assembly_bytes(self);
-}
-
 const FemEffectOps fem_effect_elasticity = {
     .name = "elasticity",
     .help = "the elements' elastic forces, by the materials of bodies",
     .is_divided = true,
     .is_wanted = is_wanted,
     .create = create,
-    .create_again = create_again,
-    .couple = couple,
+    .create_again = fem_assembly_effect_keep,
+    .couple = fem_assembly_effect_couple,
     .add_force = add_force,
     .add_jacobian = add_jacobian,
     .add_energy = add_energy,
-    .is_linear = is_linear,
-    .bytes = bytes,
-    .destroy = destroy,
+    .is_linear = fem_assembly_effect_is_linear,
+    .bytes = fem_assembly_effect_bytes,
+    .destroy = fem_assembly_effect_destroy,
 };

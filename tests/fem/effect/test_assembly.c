@@ -42,7 +42,7 @@ static void describe(Scene *scene, int cells) {
         .name = names[b],
         .box_size = {1, 1, 1},
         .box_cells = {cells, cells, cells},
-        .placement = fem_mesh_placement_identity(),
+        .placement = {.scale = {1, 1, 1}, .axis = {0, 0, 1}},
         .material =
             {.law = FEM_MATERIAL_NEO_HOOKEAN, .young = 1, .poisson = 0.3, .density = 2, .damping = -1},
     };
@@ -58,7 +58,7 @@ static void describe(Scene *scene, int cells) {
   scene->obstacle = (FemObstacleDef){.name = "wall",
                                      .box_size = {1, 1, 1},
                                      .box_cells = {1, 1, 1},
-                                     .placement = fem_mesh_placement_identity(),
+                                     .placement = {.scale = {1, 1, 1}, .axis = {0, 0, 1}},
                                      .motion = {.components = {true, true, true}, .until = INFINITY}};
   scene->obstacle.placement.translate[0] = 4;
   scene->def = (FemSceneDef){.bodies = scene->bodies,

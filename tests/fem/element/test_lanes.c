@@ -267,14 +267,14 @@ static void build(Scene *scene) {
         .name = names[b],
         .box_size = {1, 1, 1},
         .box_cells = {7, 6, 5},
-        .placement = fem_mesh_placement_identity(),
+        .placement = {.scale = {1, 1, 1}, .axis = {0, 0, 1}},
         .material = {.law = FEM_MATERIAL_STVK, .young = 1, .poisson = 0.3, .density = b + 1, .damping = -1}};
     scene->bodies[b].placement.translate[0] = 2 * b;
   }
   scene->obstacle = (FemObstacleDef){.name = "wall",
                                      .box_size = {1, 1, 1},
                                      .box_cells = {1, 1, 1},
-                                     .placement = fem_mesh_placement_identity(),
+                                     .placement = {.scale = {1, 1, 1}, .axis = {0, 0, 1}},
                                      .motion = {.components = {true, true, true}, .until = INFINITY}};
   scene->obstacle.placement.translate[0] = 4;
   scene->def = (FemSceneDef){

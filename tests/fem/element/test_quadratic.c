@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "base/vec3.h"
 #include "fem/element/quadratic_face.h"
+#include "fem/mesh/from_arrays.h"
 #include "fem/mesh/mesh.h"
 #include "fem/scene/load.h"
 #include "reference/element.h"
@@ -318,8 +319,8 @@ START_TEST(a_mesh_made_quadratic_is_cut_into_a_sound_mesh) {
   make_mesh(&mesh);
   ck_assert_int_eq(mesh.tet_count, 8 * 72);
   // Sound: nothing to mend, no face with three tetrahedra, one volume, the whole of it.
-  ck_assert_ok(fem_mesh_from_arrays(&again, "parts", mesh.vertex_count, mesh.rest, mesh.tet_count,
-                                    mesh.tets[0], &repairs));
+  ck_assert_ok(mesh_from_arrays(&again, "parts", mesh.vertex_count, mesh.rest, mesh.tet_count, mesh.tets[0],
+                                &repairs));
   ck_assert_int_eq(repairs.reoriented_tets + repairs.dropped_vertices, 0);
   ck_assert_ok(fem_mesh_quality(&mesh, &quality));
   ck_assert_near(quality.volume, 1, 1e-14);

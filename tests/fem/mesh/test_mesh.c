@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/vec3.h"
+#include "fem/mesh/from_arrays.h"
 #include "fem/mesh/mesh.h"
 
 // The corners of a unit cube, x fastest, and its centre; vertex 9 is used by nobody.
@@ -40,7 +41,7 @@ static int inverted_count(const FemMesh *mesh) {
 static void expect_refusal(int vertex_count, const double *positions, int tet_count, const int *tets,
                            const char *fault, const char *remedy) {
   FemMesh mesh;
-  Status status = fem_mesh_from_arrays(&mesh, "thing.msh", vertex_count, positions, tet_count, tets, NULL);
+  Status status = mesh_from_arrays(&mesh, "thing.msh", vertex_count, positions, tet_count, tets, NULL);
   ck_assert_int_eq(status, STATUS_INPUT);
   ck_assert_msg(strncmp(status_message(), "thing.msh: ", 11) == 0, "%s", status_message());
   ck_assert_msg(strstr(status_message(), fault) != NULL, "'%s' lacks '%s'", status_message(), fault);
@@ -53,7 +54,7 @@ START_TEST(an_inside_out_tetrahedron_is_turned_and_counted) {
   const int tets[2][4] = {{0, 2, 1, 4}, {1, 2, 4, 7}};
   FemMesh mesh;
   FemMeshRepairs repairs;
-  ck_assert_ok(fem_mesh_from_arrays(&mesh, "o", 8, cube[0], 2, tets[0], &repairs));
+  ck_assert_ok(mesh_from_arrays(&mesh, "o", 8, cube[0], 2, tets[0], &repairs));
   ck_assert_int_eq(repairs.reoriented_tets, 1);
   ck_assert_int_eq(inverted_count(&mesh), 0);
   ck_assert_near(signed_volume(&mesh), 1. / 6 + 1. / 3, 1e-15);
@@ -65,7 +66,7 @@ START_TEST(unused_vertices_are_dropped_and_the_rest_keep_their_order) {
   const int tet[4] = {1, 3, 7, 8};
   FemMesh mesh;
   FemMeshRepairs repairs;
-  ck_assert_ok(fem_mesh_from_arrays(&mesh, "o", 10, cube[0], 1, tet, &repairs));
+  ck_assert_ok(mesh_from_arrays(&mesh, "o", 10, cube[0], 1, tet, &repairs));
   ck_assert_int_eq(repairs.dropped_vertices, 6);
   ck_assert_int_eq(mesh.vertex_count, 4);
   const int kept[4] = {1, 3, 7, 8};
@@ -117,7 +118,7 @@ START_TEST(a_flat_tetrahedron_is_refused_at_every_scale_and_offset) {
                                                   R[3 * c + 2] * cube[v][2]);
     expect_refusal(10, positions[0], 2, tets[0], "element 1 at", "zero volume");
     FemMesh mesh;
-    ck_assert_ok(fem_mesh_from_arrays(&mesh, "o", 10, positions[0], 1, tets[0], NULL));
+    ck_assert_ok(mesh_from_arrays(&mesh, "o", 10, positions[0], 1, tets[0], NULL));
     fem_mesh_destroy(&mesh);
   }
 }
@@ -153,13 +154,13 @@ START_TEST(bodies_that_share_only_an_edge_or_a_vertex_are_accepted_and_reported)
   const int at_edge[2][4] = {{0, 1, 2, 3}, {0, 1, 4, 5}}, at_vertex[2][4] = {{0, 1, 2, 3}, {0, 4, 5, 6}};
   FemMesh mesh;
   FemMeshQuality quality;
-  ck_assert_ok(fem_mesh_from_arrays(&mesh, "o", 7, positions[0], 2, at_edge[0], NULL));
+  ck_assert_ok(mesh_from_arrays(&mesh, "o", 7, positions[0], 2, at_edge[0], NULL));
   ck_assert_ok(fem_mesh_quality(&mesh, &quality));
   ck_assert_int_eq(quality.pinch_edge_count, 1);
   ck_assert_int_eq(quality.pinch_vertex_count, 0);
   ck_assert_int_eq(quality.component_count, 1);
   fem_mesh_destroy(&mesh);
-  ck_assert_ok(fem_mesh_from_arrays(&mesh, "o", 7, positions[0], 2, at_vertex[0], NULL));
+  ck_assert_ok(mesh_from_arrays(&mesh, "o", 7, positions[0], 2, at_vertex[0], NULL));
   ck_assert_ok(fem_mesh_quality(&mesh, &quality));
   ck_assert_int_eq(quality.pinch_edge_count, 0);
   ck_assert_int_eq(quality.pinch_vertex_count, 1);
@@ -174,7 +175,7 @@ START_TEST(coincident_vertices_and_separate_parts_are_counted) {
   const int tets[2][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}};
   FemMesh mesh;
   FemMeshQuality quality;
-  ck_assert_ok(fem_mesh_from_arrays(&mesh, "o", 8, positions[0], 2, tets[0], NULL));
+  ck_assert_ok(mesh_from_arrays(&mesh, "o", 8, positions[0], 2, tets[0], NULL));
   ck_assert_ok(fem_mesh_quality(&mesh, &quality));
   ck_assert_int_eq(quality.coincident_vertex_count, 3);
   ck_assert_int_eq(quality.component_count, 2);
@@ -187,7 +188,7 @@ START_TEST(a_regular_tetrahedron_has_the_angles_of_the_books) {
   const int tet[4] = {0, 1, 2, 3};
   FemMesh mesh;
   FemMeshQuality q;
-  ck_assert_ok(fem_mesh_from_arrays(&mesh, "o", 4, positions[0], 1, tet, NULL));
+  ck_assert_ok(mesh_from_arrays(&mesh, "o", 4, positions[0], 1, tet, NULL));
   ck_assert_ok(fem_mesh_quality(&mesh, &q));
   // arccos ⅓; edge 2√2; a³/(6√2); √3 a².
   ck_assert_near(q.min_dihedral_degrees, 70.528779365509308, 1e-12);
@@ -211,7 +212,7 @@ START_TEST(the_worst_tetrahedron_is_named) {
   const int tets[2][4] = {{0, 1, 2, 3}, {0, 1, 2, 4}};
   FemMesh mesh;
   FemMeshQuality q;
-  ck_assert_ok(fem_mesh_from_arrays(&mesh, "o", 5, positions[0], 2, tets[0], NULL));
+  ck_assert_ok(mesh_from_arrays(&mesh, "o", 5, positions[0], 2, tets[0], NULL));
   ck_assert_ok(fem_mesh_quality(&mesh, &q));
   ck_assert_int_eq(q.min_dihedral_tet, 1);
   ck_assert_int_eq(q.min_det_tet, 1);
@@ -252,7 +253,7 @@ START_TEST(a_box_has_its_volume_surface_and_groups) {
   FemMesh copy;
   FemMeshRepairs repairs;
   ck_assert_ok(
-      fem_mesh_from_arrays(&copy, "o", mesh.vertex_count, mesh.rest, mesh.tet_count, mesh.tets[0], &repairs));
+      mesh_from_arrays(&copy, "o", mesh.vertex_count, mesh.rest, mesh.tet_count, mesh.tets[0], &repairs));
   ck_assert_int_eq(repairs.reoriented_tets + repairs.dropped_vertices, 0);
   fem_mesh_destroy(&copy), fem_mesh_destroy(&mesh);
 }
@@ -316,7 +317,7 @@ START_TEST(the_order_of_elements_and_vertices_changes_nothing) {
     for (int k = 0; k < 4; k++) tets[mesh.tet_count - 1 - t][(k + t) % 4] = order[mesh.tets[t][k]];
   FemMeshRepairs repairs;
   ck_assert_ok(
-      fem_mesh_from_arrays(&shuffled, "o", mesh.vertex_count, positions, mesh.tet_count, tets[0], &repairs));
+      mesh_from_arrays(&shuffled, "o", mesh.vertex_count, positions, mesh.tet_count, tets[0], &repairs));
   // A cycle of four is odd, two of them even.
   ck_assert_int_eq(repairs.reoriented_tets, mesh.tet_count / 2);
   FemMeshQuality a, b;
@@ -335,8 +336,8 @@ END_TEST
 START_TEST(a_placement_scales_then_turns_then_shifts) {
   const int tet[4] = {0, 1, 2, 4};
   FemMesh mesh;
-  ck_assert_ok(fem_mesh_from_arrays(&mesh, "o", 5, cube[0], 1, tet, NULL));
-  FemPlacement placement = fem_mesh_placement_identity();
+  ck_assert_ok(mesh_from_arrays(&mesh, "o", 5, cube[0], 1, tet, NULL));
+  FemPlacement placement = {.scale = {1, 1, 1}, .axis = {0, 0, 1}};
   memcpy(placement.scale, (double[3]){2, 3, 4}, sizeof placement.scale);
   memcpy(placement.axis, (double[3]){0, 0, -5}, sizeof placement.axis);
   placement.angle_degrees = -90;
@@ -352,8 +353,8 @@ END_TEST
 START_TEST(a_rotation_about_a_diagonal_permutes_the_axes) {
   const int tet[4] = {0, 1, 2, 4};
   FemMesh mesh;
-  ck_assert_ok(fem_mesh_from_arrays(&mesh, "o", 5, cube[0], 1, tet, NULL));
-  FemPlacement placement = fem_mesh_placement_identity();
+  ck_assert_ok(mesh_from_arrays(&mesh, "o", 5, cube[0], 1, tet, NULL));
+  FemPlacement placement = {.scale = {1, 1, 1}, .axis = {0, 0, 1}};
   memcpy(placement.axis, (double[3]){1, 1, 1}, sizeof placement.axis);
   placement.angle_degrees = 120;
   ck_assert_ok(fem_mesh_place(&mesh, &placement));
@@ -369,7 +370,7 @@ START_TEST(a_mirror_keeps_the_orientation_positive) {
     FemMesh mesh;
     make_bumpy(&mesh);
     double volume = signed_volume(&mesh);
-    FemPlacement placement = fem_mesh_placement_identity();
+    FemPlacement placement = {.scale = {1, 1, 1}, .axis = {0, 0, 1}};
     memcpy(placement.scale, signs[k], sizeof signs[k]);
     placement.angle_degrees = 33;
     ck_assert_ok(fem_mesh_place(&mesh, &placement));
@@ -386,7 +387,7 @@ START_TEST(an_impossible_placement_is_refused_and_changes_nothing) {
   size_t size = 3 * (size_t)mesh.vertex_count;
   double *before = memory_copy(mesh.rest, size, sizeof *before);
   FemPlacement cases[6];
-  for (int k = 0; k < 6; k++) cases[k] = fem_mesh_placement_identity();
+  for (int k = 0; k < 6; k++) cases[k] = (FemPlacement){.scale = {1, 1, 1}, .axis = {0, 0, 1}};
   cases[0].scale[1] = 0;
   cases[1].scale[2] = NAN;
   cases[2].translate[0] = INFINITY;
@@ -404,8 +405,8 @@ END_TEST
 
 static Status make_from_arrays(const FemMesh *source) {
   FemMesh mesh;
-  Status status = fem_mesh_from_arrays(&mesh, "o", source->vertex_count, source->rest, source->tet_count,
-                                       source->tets[0], NULL);
+  Status status = mesh_from_arrays(&mesh, "o", source->vertex_count, source->rest, source->tet_count,
+                                   source->tets[0], NULL);
   fem_mesh_destroy(&mesh);
   return status;
 }

@@ -141,11 +141,11 @@ START_TEST(a_motion_changes_when_it_begins_to) {
   ck_assert_double_eq(fem_drive_next_change(&def, 6), 6);
   ck_assert(isinf(fem_drive_next_change(&def, 7)));
   Expression formula;
-  ck_assert_ok(expression_parse(&formula, "2*pi"));
+  ck_assert_ok(expression_parse(&formula, "t", "2*pi"));
   ck_assert(expression_is_constant(&formula));
   FemLoadDef load = {.factor = &formula};
   ck_assert(isinf(fem_load_next_change(&load, 3)));
-  ck_assert_ok(expression_parse(&formula, "2*t"));
+  ck_assert_ok(expression_parse(&formula, "t", "2*t"));
   ck_assert_double_eq(fem_load_next_change(&load, 3), 3);
   double profile[] = {0, 1, 1, 1, 2, 5};
   load = (FemLoadDef){.table = profile, .table_count = 3};

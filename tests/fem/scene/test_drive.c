@@ -58,8 +58,8 @@ END_TEST
 // derivative, and by rounding, 1e-10.
 START_TEST(velocities_are_the_rates_of_positions) {
   Expression angle, along;
-  ck_assert_ok(expression_parse(&angle, "sin(3*t)"));
-  ck_assert_ok(expression_parse(&along, "t^2"));
+  ck_assert_ok(expression_parse(&angle, "t", "sin(3*t)"));
+  ck_assert_ok(expression_parse(&along, "t", "t^2"));
   for (int order = 0; order < 2; order++) {
     FemConstraintDef def = {.turns = true,
                             .angle = &angle,

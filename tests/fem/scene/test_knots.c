@@ -102,13 +102,13 @@ END_TEST
 
 START_TEST(a_formula_is_followed_to_its_kinks_and_where_it_bends) {
   Expression formula;
-  ck_assert_ok(expression_parse(&formula, "smooth((t-1)/0.01) - smooth((t-1.02)/0.01)"));
+  ck_assert_ok(expression_parse(&formula, "t", "smooth((t-1)/0.01) - smooth((t-1.02)/0.01)"));
   FemConstraintDef def = {.formula = {NULL, &formula, NULL}, .until = INFINITY};
   ck_assert_double_eq(fem_drive_horizon(&def, 1, &foresight, 0.5, 50), 1);
   ck_assert_near(fem_drive_horizon(&def, 1, &foresight, 1, 50), 1.01, 1e-14);
   ck_assert_near(fem_drive_horizon(&def, 1, &foresight, 1.015, 50), 1.02, 1e-14);
   ck_assert_double_eq(fem_drive_horizon(&def, 1, &foresight, 1.03, 50), 50);
-  ck_assert_ok(expression_parse(&formula, "sin(t)"));
+  ck_assert_ok(expression_parse(&formula, "t", "sin(t)"));
   double end = fem_drive_horizon(&def, 1, &foresight, 0, 50);
   ck_assert_double_ge(end, 0.3);
   ck_assert_double_le(end, 1.8); // (h/2)⁴/24 of the amplitude is 1e-3 at h = 0.8

@@ -132,7 +132,7 @@ START_TEST(a_factor_follows_its_table_and_its_formula) {
     ck_assert_near(factor, expected[i][1], 1e-15);
   }
   Expression expression;
-  ck_assert_ok(expression_parse(&expression, "1/(t - 1)"));
+  ck_assert_ok(expression_parse(&expression, "t", "1/(t - 1)"));
   FemLoadDef formula = {.factor = &expression};
   ck_assert_ok(fem_load_factor(&formula, 3, &factor));
   ck_assert_near(factor, 0.5, 0);

@@ -23,7 +23,7 @@ static void beam_open(Beam *beam, double damping) {
   beam->body = (FemBodyDef){.name = name,
                             .box_size = {1, 0.1, 0.1},
                             .box_cells = {20, 2, 2},
-                            .placement = fem_mesh_placement_identity(),
+                            .placement = {.scale = {1, 1, 1}, .axis = {0, 0, 1}},
                             .material = {.law = FEM_MATERIAL_NEO_HOOKEAN,
                                          .young = 1e6,
                                          .poisson = 0.3,
