@@ -28,6 +28,7 @@ static const Key body_keys[] = {
     {"material.ogden.shares[#]", FEM_PARAMETER_OGDEN_SHARE, -1, 0, -1},
     {"material.fibre.modulus", FEM_PARAMETER_FIBRE, -1, -1, -1},
     {"velocity[#]", FEM_PARAMETER_START, -1, -1, 0},
+    {"spin[#]", FEM_PARAMETER_START_SPIN, -1, -1, 0},
     {"material.damping", FEM_PARAMETER_DAMPING, -1, -1, -1},
     {"material.viscosity", FEM_PARAMETER_VISCOSITY, -1, -1, -1},
     {"material.bulk_viscosity", FEM_PARAMETER_BULK_VISCOSITY, -1, -1, -1},
@@ -72,7 +73,7 @@ const char app_gradient_keys[] =
     "fibre.modulus, damping, viscosity, bulk_viscosity}, bodies.NAME.materials[N].{…} the same; "
     "bodies.NAME.loads[N].{force[K], body_force[K], traction[K], pressure}; "
     "bodies.NAME.driven[N].{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}; "
-    "bodies.NAME.{place.translate[K], velocity[K]}; "
+    "bodies.NAME.{place.translate[K], velocity[K], spin[K]}; "
     "obstacles.NAME.{halfspace.point[K], sphere.centre[K], box.centre[K], cylinder.centre[K], "
     "place.translate[K]}; "
     "obstacles.NAME.motion.{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}; "

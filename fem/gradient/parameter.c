@@ -36,6 +36,7 @@ static const struct {
     [FEM_PARAMETER_FRICTION] = {OF_SCENE, ""},
     [FEM_PARAMETER_PAIR_FRICTION] = {OF_SCENE, ""},
     [FEM_PARAMETER_START] = {OF_SCENE, "m/s"},
+    [FEM_PARAMETER_START_SPIN] = {OF_SCENE, "rad/s"},
     [FEM_PARAMETER_CONTACT_VISCOSITY] = {OF_SCENE, "Pa s/m²"},
 };
 
@@ -261,6 +262,7 @@ const char *fem_parameter_idle(const FemModel *model, const FemParameter *parame
   case FEM_PARAMETER_OGDEN_SHARE:
     return idle_of_law(model, parameter, FEM_MATERIAL_OGDEN);
   case FEM_PARAMETER_START:
+  case FEM_PARAMETER_START_SPIN:
   case FEM_PARAMETER_CONTACT_VISCOSITY:
   case FEM_PARAMETER_VISCOSITY:
   case FEM_PARAMETER_BULK_VISCOSITY:
@@ -355,6 +357,8 @@ double fem_parameter_value(const FemModel *model, const FemParameter *parameter)
     return contact_of(model)->pairs[parameter->item].friction.coefficient;
   case FEM_PARAMETER_START:
     return model->scene->bodies[parameter->body].velocity[parameter->component];
+  case FEM_PARAMETER_START_SPIN:
+    return model->scene->bodies[parameter->body].spin[parameter->component];
   case FEM_PARAMETER_CONTACT_VISCOSITY:
     return contact_of(model)->viscosity;
   default:

@@ -29,6 +29,7 @@ typedef enum FemParameterKind {
   FEM_PARAMETER_FRICTION,          // μ between any two that no pair says otherwise
   FEM_PARAMETER_PAIR_FRICTION,     // μ of contact.pairs[item]
   FEM_PARAMETER_START,             // a component of the velocity that a body starts with [m/s]
+  FEM_PARAMETER_START_SPIN,        // of the angular velocity that it starts with [rad/s]
   FEM_PARAMETER_CONTACT_VISCOSITY, // acts in motions alone, of which it has no derivative
 } FemParameterKind;
 

@@ -8,6 +8,7 @@
 #include "base/vec3.h"
 #include "fem/model/division.h"
 #include "fem/model/drivers.h"
+#include "fem/model/floating.h"
 #include "fem/model/parts.h"
 #include "fem/model/work.h"
 #include "fem/scene/meshes.h"
@@ -103,9 +104,7 @@ static void lump_mass(FemModel *model, FemModelBody *body) {
 
 // v = velocity + spin × (x − centre of mass).
 static void set_velocity(FemModel *model, const FemModelBody *body, const FemBodyDef *def) {
-  Vec3 centre = {0, 0, 0};
-  for (int a = body->vertex_begin; a < body->vertex_end; a++)
-    centre = vec3_add(centre, vec3_scale(model->mass[a] / body->mass, vec3_at(model->rest + 3 * a)));
+  Vec3 centre = fem_model_centre(model, body);
   for (int a = body->vertex_begin; a < body->vertex_end; a++) {
     Vec3 arm = vec3_sub(vec3_at(model->rest + 3 * a), centre);
     vec3_store(model->initial_velocity + 3 * a,

@@ -25,6 +25,13 @@ double fem_model_mass(const FemModel *model) {
   return mass;
 }
 
+Vec3 fem_model_centre(const FemModel *model, const FemModelBody *body) {
+  Vec3 centre = {0, 0, 0};
+  for (int a = body->vertex_begin; a < body->vertex_end; a++)
+    centre = vec3_add(centre, vec3_scale(model->mass[a] / body->mass, vec3_at(model->rest + 3 * (size_t)a)));
+  return centre;
+}
+
 // Of the directions whose part is removed; planes that are nearly parallel to the first two add none.
 static const double PARALLEL = 1e-6;
 

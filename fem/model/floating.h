@@ -18,6 +18,9 @@ bool fem_model_floats(const FemModel *model, double released);
 // Of all bodies [kg].
 double fem_model_mass(const FemModel *model);
 
+// Of a body's mass at rest [m].
+Vec3 fem_model_centre(const FemModel *model, const FemModelBody *body);
+
 // The part of the velocity of the centre of mass that changes nothing: all of it where bodies float; the part
 // along the planes where half-spaces without friction are the only obstacles; else none.
 Vec3 fem_model_common_part(const FemModel *model, double released, Vec3 velocity);

@@ -84,6 +84,22 @@ class Gradient(unittest.TestCase):
             expected = np.vdot(found["weights"][goal][last], moved[last] - weights[last])
             self.assertAlmostEqual(other["value"][goal] - found["value"][goal], expected, delta=2e-3 * abs(expected))
 
+    def test_a_motion_that_goes_on_from_another_run(self):
+        place, velocity = [0, 0, 0.004], [0, 0, -0.3]
+        bodies = [{**SCENE["bodies"][0], "fixed": [], "place": {"translate": place}}]
+        scene = {**SCENE, "time": {"end": 0.02, "tolerance": 1e-6}, "bodies": [{**bodies[0], "velocity": velocity}]}
+        of, by = ["displacement:block:z", "energy:elastic"], [YOUNG, "effects.gravity[2]"]
+        with tempfile.TemporaryDirectory() as folder:
+            tetlap.run(scene, f"{folder}/first")
+            scene.update(bodies=bodies, start=f"{folder}/first")
+            found = tetlap.gradient(scene, of, by)
+            ended = tetlap.run(scene, f"{folder}/second")
+            moved = ended.frames[-1].points.mean(0)[2] - 0.05 - place[2]
+            sides = [tetlap.gradient(scene, of, by, set={YOUNG: young})["value"] for young in (0.99e5, 1.01e5)]
+        self.assertAlmostEqual(found["value"][0], moved, delta=1e-3 * abs(moved))
+        self.assertAlmostEqual(found["value"][1], ended.history["elastic_J"][-1], delta=0.01 * found["value"][1])
+        np.testing.assert_allclose(found["derivative"][:, 0] * 2e3, sides[1] - sides[0], rtol=0.02)
+
     def test_what_has_no_gradient_says_why(self):
         ball = {"name": "ball", "sphere": {"centre": [0, 0, -1], "radius": 1}}
         with self.assertRaisesRegex(tetlap.RunError, "friction on a sphere"):

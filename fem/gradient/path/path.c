@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "fem/gradient/path/start.h"
 #include "fem/model/compliance/compliance.h"
 #include "fem/model/compliance/laws.h"
 #include "fem/sparse/vector.h"
@@ -382,24 +383,33 @@ static Status go_back_to(Sweep *sweep, int k, FemGradient *gradient) {
 
 // ---- Where the run begins.
 
-// By the velocity that a body starts with: s_0. By its place: friction looks at where it was.
-static void add_start(Sweep *sweep, int p, FemGradient *gradient) {
+// By a body's place: friction looks at where it was.
+static void add_place(const Sweep *sweep, int p, FemGradient *gradient) {
   const FemGradientDef *def = sweep->def;
   const FemReplay *replay = &sweep->replay;
   const FemParameter *parameter = &def->parameters[p];
-  bool is_start = parameter->kind == FEM_PARAMETER_START;
-  bool is_place = parameter->kind == FEM_PARAMETER_PLACE && parameter->obstacle < 0 && has_friction(sweep);
-  if (!is_start && !is_place) return;
+  if (parameter->kind != FEM_PARAMETER_PLACE || parameter->obstacle >= 0 || !has_friction(sweep)) return;
   const FemModelBody *body = &replay->system.model->bodies[parameter->body];
   for (int g = 0; g < def->goal_count; g++)
     for (int i = 0; i < replay->n; i++) {
       int dof = replay->system.numbering.dof_of_unknown[i];
       bool is_its = dof / 3 >= body->vertex_begin && dof / 3 < body->vertex_end;
-      if (!is_its || dof % 3 != parameter->component) continue;
-      gradient->derivatives[g * def->parameter_count + p] +=
-          is_start ? fem_replay_mass(replay, i) * carried(sweep, sweep->behind[g].beta, 0, i)
-                   : sweep->behind[g].places[dof];
+      if (is_its && dof % 3 == parameter->component)
+        gradient->derivatives[g * def->parameter_count + p] += sweep->behind[g].places[dof];
     }
+}
+
+// By the velocities that bodies start with: s_0.
+static Status add_start(Sweep *sweep, int p, FemGradient *gradient) {
+  const FemGradientDef *def = sweep->def;
+  const FemReplay *replay = &sweep->replay;
+  TRY(fem_start_find(replay->system.model, &def->parameters[p], sweep->weight));
+  for (int g = 0; g < def->goal_count; g++)
+    for (int i = 0; i < replay->n; i++)
+      gradient->derivatives[g * def->parameter_count + p] +=
+          sweep->weight[replay->system.numbering.dof_of_unknown[i]] * fem_replay_mass(replay, i) *
+          carried(sweep, sweep->behind[g].beta, 0, i);
+  return STATUS_OK;
 }
 
 static Status replay_and_return(Sweep *sweep, FemGradient *gradient) {
@@ -410,7 +420,10 @@ static Status replay_and_return(Sweep *sweep, FemGradient *gradient) {
   int first = has_friction(sweep) ? 0 : 1;
   for (int k = replay->steps->count - 1; k >= first; k--)
     TRY(fem_replay_end(replay, k, go_back_to(sweep, k, gradient)));
-  for (int p = 0; p < sweep->def->parameter_count; p++) add_start(sweep, p, gradient);
+  for (int p = 0; p < sweep->def->parameter_count; p++) {
+    add_place(sweep, p, gradient);
+    TRY(add_start(sweep, p, gradient));
+  }
   return STATUS_OK;
 }
 

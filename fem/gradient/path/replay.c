@@ -294,7 +294,16 @@ static Status step(FemReplay *replay, int k) {
   return keep_histories(replay, k);
 }
 
+// Where the run starts from another's end.
+static Status begin(FemReplay *replay) {
+  const FemModel *model = replay->system.model;
+  if (!model->start) return STATUS_OK;
+  memcpy(replay->state.positions, model->start->positions, 3 * (size_t)model->vertex_count * sizeof(double));
+  return fem_system_begin(&replay->system, &replay->state, 0);
+}
+
 Status fem_replay_go(FemReplay *replay) {
+  TRY(begin(replay));
   fem_system_gather(&replay->system, &replay->system.accepted, replay->u, replay->v);
   TRY(keep_histories(replay, 0));
   for (int k = 1; k < replay->steps->count; k++) TRY(fem_replay_end(replay, k, step(replay, k)));

@@ -73,6 +73,19 @@ START_TEST(a_block_of_two_materials_agrees_with_differences_of_replays) {
 }
 END_TEST
 
+// The middle of mass, about which it turns, moves by the density of either part.
+START_TEST(a_spinning_block_of_two_materials_agrees_with_differences_of_replays) {
+  const Asked asked = {
+      .scene = "gradient_motion",
+      .setting = "bodies.upper.materials=[{halfspace: {point: [0.09, 0, 0], normal: [-1, 0, 0]}, young: 3e5, "
+                 "poisson: 0.3, density: 2000}]",
+      .overlap = "bodies.upper.spin=[1, -2, 3]",
+      .of = {"displacement:upper:x", "position:upper:3:x"},
+      .by = {"bodies.upper.spin[1]", "bodies.upper.spin[2]", "bodies.upper.materials[0].density"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
 START_TEST(a_damped_block_thrown_upon_another_agrees_with_differences_of_replays) {
   const Asked asked = {
       .scene = "gradient_damped",
@@ -196,6 +209,7 @@ int main(void) {
   tcase_add_test(test_case, goals_at_earlier_times_agree_with_differences_of_replays);
   tcase_add_loop_test(test_case, a_block_thrown_by_learned_overlaps_agrees_with_differences_of_replays, 0, 2);
   tcase_add_test(test_case, a_block_of_two_materials_agrees_with_differences_of_replays);
+  tcase_add_test(test_case, a_spinning_block_of_two_materials_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_motion_that_ends_in_contact_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_damped_block_thrown_upon_another_agrees_with_differences_of_replays);
   tcase_add_test(test_case, what_damping_has_by_positions_and_velocities_leaves_the_second_order);
