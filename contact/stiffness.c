@@ -154,7 +154,7 @@ static void hand_on(ContactStiffness *stiffness, const ContactStiffnessSink *sin
 // ---- All of it.
 
 static void bend(const ContactLayout *layout, const ContactEvaluation *evaluation, int k,
-                 const double *slopes, double *matrix) {
+                 const ContactStiffnessWay *way, double *matrix) {
   const ContactPair *pair = &evaluation->pairs[k];
   double coordinates[OVERLAP_PAIR_SIZE];
   if (!contact_layout_has_field(layout)) {
@@ -163,12 +163,17 @@ static void bend(const ContactLayout *layout, const ContactEvaluation *evaluatio
     return;
   }
   memcpy(coordinates, evaluation->coordinates + OVERLAP_PAIR_SIZE * (size_t)k, sizeof coordinates);
+  if (way->is_turned && evaluation->fields[k].law) {
+    contact_field_turn_law(layout, pair, evaluation->time, coordinates, &evaluation->fields[k], matrix);
+    return;
+  }
   if (pair->cells[1] < 0) {
     contact_field_bend_shape(layout, pair, evaluation->time, coordinates, matrix);
     return;
   }
-  if (slopes) {
-    contact_field_turn(layout, pair, coordinates, &evaluation->fields[k], slopes + 96 * (size_t)k, matrix);
+  if (way->slopes) {
+    contact_field_turn(layout, pair, coordinates, &evaluation->fields[k], way->slopes + 96 * (size_t)k,
+                       matrix);
     return;
   }
   contact_layout_unsettle_pair(layout, pair, coordinates);
@@ -176,8 +181,8 @@ static void bend(const ContactLayout *layout, const ContactEvaluation *evaluatio
 }
 
 Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *layout,
-                             const ContactEvaluation *evaluation, int interface, const double *slopes,
-                             const ContactStiffnessSink *sink) {
+                             const ContactEvaluation *evaluation, int interface,
+                             const ContactStiffnessWay *way, const ContactStiffnessSink *sink) {
   int count;
   TRY(order_pairs(stiffness, layout, interface, evaluation->pair_count, evaluation->pairs, &count));
   const ContactStiffnessKey *order = stiffness->order;
@@ -185,7 +190,7 @@ Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *l
     int end = first + PORTION_SIZE < count ? first + PORTION_SIZE : count;
 #pragma omp parallel for schedule(static) if (end - first > 64)
     for (int k = first; k < end; k++)
-      bend(layout, evaluation, order[k].pair, slopes, stiffness->matrices + 576 * (size_t)(k - first));
+      bend(layout, evaluation, order[k].pair, way, stiffness->matrices + 576 * (size_t)(k - first));
     for (int k = first; k < end; k++) {
       if (k > 0 && !are_alike(&order[k], &order[k - 1])) hand_on(stiffness, sink);
       add_pair(stiffness, layout, &evaluation->pairs[order[k].pair],

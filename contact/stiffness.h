@@ -46,13 +46,18 @@ size_t contact_stiffness_bytes(const ContactStiffness *stiffness); // on the hea
 
 enum { CONTACT_ALL_INTERFACES = -1 };
 
+// What is handed on: ∂²U/∂x², or −∂f/∂x, which is not symmetric.
+typedef struct ContactStiffnessWay {
+  bool is_turned;       // −∂f/∂x of pairs with a law, by contact_field_turn_law
+  const double *slopes; // of the model (mesh_pair_count, 4, 24): −∂f/∂x of pairs of meshes by
+                        // contact_field_turn; NULL: clipping's polyhedra serve. Borrowed
+} ContactStiffnessWay;
+
 // Hands ∂²U/∂x² of an evaluation to the sink, that of one interface or of all, as contact_field_bend or
-// contact_volume_bend gives it, by vertices of the contact mesh. With the model's `slopes` (mesh_pair_count,
-// 4, 24; else NULL) of pairs of meshes −∂f/∂x by contact_field_turn instead, which is not symmetric.
-// STATUS_MEMORY possible.
+// contact_volume_bend gives it, or −∂f/∂x, by vertices of the contact mesh. STATUS_MEMORY possible.
 Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *layout,
-                             const ContactEvaluation *evaluation, int interface, const double *slopes,
-                             const ContactStiffnessSink *sink);
+                             const ContactEvaluation *evaluation, int interface,
+                             const ContactStiffnessWay *way, const ContactStiffnessSink *sink);
 
 // Visits cliques that contain every list the sink would be given if all candidates whose boxes are within
 // `reach` of each other (a half-space: that are within `reach` of it) overlapped.

@@ -398,8 +398,8 @@ void contact_system_add_resting(const ContactSystem *system, double *force) {
 
 Status contact_system_stiffness(ContactSystem *system, const ContactEvaluation *evaluation,
                                 const ContactStiffnessSink *sink) {
-  return contact_stiffness_add(&system->stiffness, &system->layout, evaluation, CONTACT_ALL_INTERFACES, NULL,
-                               contact_system_sink(system, sink));
+  return contact_stiffness_add(&system->stiffness, &system->layout, evaluation, CONTACT_ALL_INTERFACES,
+                               &(ContactStiffnessWay){false, NULL}, contact_system_sink(system, sink));
 }
 
 void contact_system_add_force_of(const ContactSystem *system, const ContactEvaluation *evaluation,
@@ -421,9 +421,9 @@ double contact_system_energy_of(const ContactEvaluation *evaluation, int interfa
 
 Status contact_system_turn(ContactSystem *system, const ContactEvaluation *evaluation, int interface,
                            const ContactStiffnessSink *sink) {
-  const double *slopes;
-  TRY(contact_system_slopes(system, evaluation, &slopes));
-  return contact_stiffness_add(&system->stiffness, &system->layout, evaluation, interface, slopes,
+  ContactStiffnessWay way = {.is_turned = true};
+  TRY(contact_system_slopes(system, evaluation, &way.slopes));
+  return contact_stiffness_add(&system->stiffness, &system->layout, evaluation, interface, &way,
                                contact_system_sink(system, sink));
 }
 

@@ -105,7 +105,8 @@ Status contact_system_stiffness(ContactSystem *system, const ContactEvaluation *
 void contact_system_areas(const ContactSystem *system, const ContactEvaluation *evaluation, double *areas);
 
 // Adds −∂f/∂x of an interface, or CONTACT_ALL_INTERFACES, exactly by the overlap model's own derivatives,
-// which it has (overlap/slopes.h): the matrices are not symmetric. With the potential `field` and no law.
+// which it has (overlap/slopes.h), and with a law by differences (contact/pressure/field.h): the matrices are
+// not symmetric. With the potential `field`; laws with a model that clips.
 Status contact_system_turn(ContactSystem *system, const ContactEvaluation *evaluation, int interface,
                            const ContactStiffnessSink *sink);
 // ∂V/∂x and ∂x̄/∂x of the evaluation's pairs of meshes (mesh_pair_count, 4, 24), the system's; NULL of a model

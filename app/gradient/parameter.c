@@ -27,6 +27,7 @@ static const Key body_keys[] = {
     {"material.ogden.exponents[#]", FEM_PARAMETER_OGDEN_EXPONENT, -1, 0, -1},
     {"material.ogden.shares[#]", FEM_PARAMETER_OGDEN_SHARE, -1, 0, -1},
     {"material.fibre.modulus", FEM_PARAMETER_FIBRE, -1, -1, -1},
+    {"material.fibre.direction[#]", FEM_PARAMETER_FIBRE_DIRECTION, -1, 0, -1},
     {"velocity[#]", FEM_PARAMETER_START, -1, -1, 0},
     {"spin[#]", FEM_PARAMETER_START_SPIN, -1, -1, 0},
     {"material.damping", FEM_PARAMETER_DAMPING, -1, -1, -1},
@@ -61,6 +62,20 @@ static const Key obstacle_keys[] = {
 static const Key scene_keys[] = {
     {"contact.stiffness", FEM_PARAMETER_CONTACT_STIFFNESS, -1, -1, -1},
     {"contact.pairs[#].stiffness", FEM_PARAMETER_PAIR_STIFFNESS, 0, -1, -1},
+    {"contact.law.power.pressure", FEM_PARAMETER_LAW_PRESSURE, -1, -1, -1},
+    {"contact.law.power.depth", FEM_PARAMETER_LAW_DEPTH, -1, -1, -1},
+    {"contact.law.power.exponent", FEM_PARAMETER_LAW_EXPONENT, -1, -1, -1},
+    {"contact.law.exponential.pressure", FEM_PARAMETER_LAW_PRESSURE, -1, -1, -1},
+    {"contact.law.exponential.depth", FEM_PARAMETER_LAW_DEPTH, -1, -1, -1},
+    {"contact.law.table[#][#]", FEM_PARAMETER_LAW_TABLE, -1, 0, 1},
+    {"contact.pairs[#].law.power.pressure", FEM_PARAMETER_LAW_PRESSURE, 0, -1, -1},
+    {"contact.pairs[#].law.power.depth", FEM_PARAMETER_LAW_DEPTH, 0, -1, -1},
+    {"contact.pairs[#].law.power.exponent", FEM_PARAMETER_LAW_EXPONENT, 0, -1, -1},
+    {"contact.pairs[#].law.exponential.pressure", FEM_PARAMETER_LAW_PRESSURE, 0, -1, -1},
+    {"contact.pairs[#].law.exponential.depth", FEM_PARAMETER_LAW_DEPTH, 0, -1, -1},
+    {"contact.pairs[#].law.table[#][#]", FEM_PARAMETER_LAW_TABLE, 0, 1, 2},
+    {"contact.friction.coefficient", FEM_PARAMETER_FRICTION, -1, -1, -1},
+    {"contact.pairs[#].friction.coefficient", FEM_PARAMETER_PAIR_FRICTION, 0, -1, -1},
     {"contact.friction", FEM_PARAMETER_FRICTION, -1, -1, -1},
     {"contact.pairs[#].friction", FEM_PARAMETER_PAIR_FRICTION, 0, -1, -1},
     {"contact.viscosity", FEM_PARAMETER_CONTACT_VISCOSITY, -1, -1, -1},
@@ -70,14 +85,16 @@ static const Key scene_keys[] = {
 
 const char app_gradient_keys[] =
     "bodies.NAME.material.{young, poisson, density, mooney, ogden.exponents[K], ogden.shares[K], "
-    "fibre.modulus, damping, viscosity, bulk_viscosity}, bodies.NAME.materials[N].{…} the same; "
+    "fibre.modulus, fibre.direction[K], damping, viscosity, bulk_viscosity}, bodies.NAME.materials[N].{…} "
+    "the same; "
     "bodies.NAME.loads[N].{force[K], body_force[K], traction[K], pressure}; "
     "bodies.NAME.driven[N].{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}; "
     "bodies.NAME.{place.translate[K], velocity[K], spin[K]}; "
     "obstacles.NAME.{halfspace.point[K], sphere.centre[K], box.centre[K], cylinder.centre[K], "
     "place.translate[K]}; "
     "obstacles.NAME.motion.{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}; "
-    "contact.stiffness, contact.friction, contact.pairs[N].{stiffness, friction}; "
+    "contact.stiffness, contact.friction, contact.law.{power.{pressure, depth, exponent}, "
+    "exponential.{pressure, depth}, table[ROW][1]}, contact.pairs[N].{stiffness, friction, law.…}; "
     "effects.gravity[K], effects.damping";
 
 static bool matches(const char *key, const char *pattern, int numbers[MAX_NUMBERS]) {
@@ -125,11 +142,11 @@ static bool find_body_key(const char *text, FemParameter *parameter, int *item) 
 }
 
 static bool is_in_range(FemParameter *parameter) {
-  bool is_ogden =
-      parameter->kind == FEM_PARAMETER_OGDEN_EXPONENT || parameter->kind == FEM_PARAMETER_OGDEN_SHARE;
+  bool is_of_three = parameter->kind == FEM_PARAMETER_OGDEN_EXPONENT ||
+                     parameter->kind == FEM_PARAMETER_OGDEN_SHARE ||
+                     parameter->kind == FEM_PARAMETER_FIBRE_DIRECTION;
   if (parameter->kind == FEM_PARAMETER_TABLE) parameter->component--; // behind the time
-  return parameter->component <= 2 && parameter->item >= 0 && parameter->row >= 0 &&
-         (!is_ogden || parameter->row <= 2);
+  return parameter->component <= 2 && (!is_of_three || parameter->row <= 2);
 }
 
 // What is of the kind that the key says: a traction is no force, a sphere no box.
@@ -152,6 +169,15 @@ static bool is_of_kind(const FemSceneDef *scene, const char *rest, const FemPara
   if (parameter->kind != FEM_PARAMETER_PLACE || parameter->obstacle < 0) return true;
   const char *shape = shapes[scene->obstacles[parameter->obstacle].kind];
   return strncmp(rest, shape, strlen(shape)) == 0;
+}
+
+// The same of a law, where there is one; else it is told later.
+static bool is_of_law(const FemModel *model, const char *key, const FemParameter *parameter) {
+  static const char *const laws[] = {[CONTACT_LAW_POWER] = ".power.",
+                                     [CONTACT_LAW_EXPONENTIAL] = ".exponential.",
+                                     [CONTACT_LAW_TABLE] = ".table["};
+  const ContactLaw *law = fem_parameter_law(model, parameter);
+  return !law || (law->kind <= CONTACT_LAW_TABLE && strstr(key, laws[law->kind]) != NULL);
 }
 
 static Status fail_parameter(const char *key) {
@@ -209,11 +235,13 @@ static Status read_owned(const FemModel *model, const char *key, FemParameter *p
 
 Status app_gradient_read_parameter(const FemModel *model, const char *key, FemParameter *parameter) {
   static const char *const lists[] = {"bodies.", "obstacles."};
-  *parameter = (FemParameter){.body = -1, .part = -1, .obstacle = -1};
+  *parameter = (FemParameter){.body = -1, .part = -1, .obstacle = -1, .item = -1};
   for (int k = 0; k < 2; k++)
     if (strncmp(key, lists[k], strlen(lists[k])) == 0)
       return status_prefix(read_owned(model, key, parameter), "%s", key);
   if (!find_key(key, scene_keys, sizeof scene_keys / sizeof *scene_keys, parameter))
     return fail_parameter(key);
-  return is_in_range(parameter) ? STATUS_OK : fail_parameter(key);
+  if (!is_in_range(parameter)) return fail_parameter(key);
+  if (!fem_parameter_is_of_law(parameter) || is_of_law(model, key, parameter)) return STATUS_OK;
+  return status_fail(STATUS_INPUT, "%s: the scene does not have this key", key);
 }

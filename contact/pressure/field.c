@@ -271,6 +271,53 @@ void contact_field_turn(const ContactLayout *layout, const ContactPair *pair, co
   }
 }
 
+// ---- The same with a law, by differences: its points of a pair follow P's moments.
+
+// V, x̄ and the forces of a pair whose volume clipping finds.
+static void press_anew(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
+                       double forces[24]) {
+  ContactClipped clipped;
+  ContactFieldPair field;
+  double volume = 0, lanes[4] = {0, 0, 0, 0}, centroid[3] = {0, 0, 0};
+  memset(forces, 0, 24 * sizeof *forces);
+  if (!contact_clipped_make(&clipped, layout, pair, coordinates)) return;
+  const double *apex = clipped.polytope.vertex[contact_clipped_apex(&clipped)];
+  for (int i = 0; i < clipped.triangle_count; i++) {
+    const ContactTriangle *triangle = &clipped.triangles[i];
+    double own = contact_clipped_pyramid(&clipped, triangle);
+    volume += own;
+    for (int v = 0; v < 4; v++) {
+      double sum = apex[v];
+      for (int k = 0; k < 3; k++) sum += clipped.polytope.vertex[triangle->vertex[k]][v];
+      lanes[v] += own / 4 * sum;
+    }
+  }
+  if (!(volume > 0)) return;
+  for (int v = 0; v < 4; v++)
+    vec3_accumulate(centroid, vec3_scale(lanes[v] / volume, vec3_at(coordinates + 3 * v)));
+  contact_field_press(layout, pair, coordinates, volume, centroid, &field, forces);
+}
+
+void contact_field_turn_law(const ContactLayout *layout, const ContactPair *pair, double time,
+                            const double coordinates[24], const ContactFieldPair *field, double *matrix) {
+  bool is_shape = pair->cells[1] < 0;
+  int width = is_shape ? 12 : 24;
+  double step = contact_field_law_step() * (field->depths[0] + field->depths[1]), x[24], force[24];
+  memset(matrix, 0, (size_t)(width * width) * sizeof *matrix);
+  for (int k = 0; k < width && step > 0; k++)
+    for (int side = 1; side >= -1; side -= 2) {
+      ContactFieldPair moved;
+      memcpy(x, coordinates, (size_t)width * sizeof *x);
+      x[k] += side * step;
+      if (is_shape)
+        contact_field_press_shape(layout, pair, time, x, &moved, force);
+      else
+        press_anew(layout, pair, x, force);
+      for (int r = 0; r < width; r++) matrix[width * r + k] -= side * force[r] / (2 * step);
+    }
+  for (int r = 0; r < width && !is_shape; r++) fold_columns(layout, pair, matrix + width * r);
+}
+
 // ---- Shapes.
 
 // Where the resultant acts, by the forces on the vertices.

@@ -338,9 +338,30 @@ static void add_all_layers(const Pressed *pressed, const ContactLaw *law, double
   }
 }
 
+// By the exponent, on which the layers' depths depend: of the sums as they are, by a central difference.
+static void derive_exponent(const ContactShape *shape, const ContactLaw *law, double time,
+                            const double tet[12], double rest_volume, double *energy, double gradient[12]) {
+  double step = contact_field_law_step() * (law->exponent - 1);
+  *energy = 0;
+  memset(gradient, 0, 12 * sizeof *gradient);
+  for (int side = -1; side <= 1; side += 2) {
+    double own, slope[12];
+    ContactLaw other = *law;
+    other.by = CONTACT_LAW_VALUE;
+    other.exponent += side * step;
+    contact_field_law_press_shape(shape, &other, time, tet, rest_volume, &own, slope, NULL);
+    *energy += side * own / (2 * step);
+    for (int i = 0; i < 12; i++) gradient[i] += side * slope[i] / (2 * step);
+  }
+}
+
 void contact_field_law_press_shape(const ContactShape *shape, const ContactLaw *law, double time,
                                    const double tet[12], double rest_volume, double *energy,
                                    double gradient[12], double hessian[144]) {
+  if (law->by == CONTACT_LAW_BY_EXPONENT) {
+    derive_exponent(shape, law, time, tet, rest_volume, energy, gradient);
+    return;
+  }
   Pressed pressed = {shape, time, tet, rest_volume, energy, gradient, hessian};
   *energy = 0;
   memset(gradient, 0, 12 * sizeof *gradient);

@@ -23,6 +23,9 @@
 #ifndef TETLAP_CONTACT_PRESSURE_FIELD_LAW_H
 #define TETLAP_CONTACT_PRESSURE_FIELD_LAW_H
 
+#include <float.h>
+#include <math.h>
+
 #include "contact/pressure/clipped.h"
 #include "contact/pressure/field_pair.h"
 #include "contact/pressure/law.h"
@@ -35,6 +38,12 @@
 void contact_field_law_press(const ContactLayout *layout, const ContactPair *pair,
                              const double coordinates[24], const ContactSide sides[2],
                              ContactFieldPair *field, double forces[24]);
+
+// How far a central difference goes, as a share of a depth or of an exponent: what it omits, the square of
+// this, is √ε, and rounding less.
+static inline double contact_field_law_step(void) {
+  return sqrt(sqrt(DBL_EPSILON));
+}
 
 // What faces and volume add up to: ∫_{P_f} ψ′ λ_z λ_w dA over the area of face f, of the faces with a bit in
 // `wanted`; of the depth in side t ∫_P ψ′ λ_z dx and ∫_P ψ″ λ_z λ_w dx.
@@ -52,6 +61,8 @@ void contact_field_law_add(ContactClipped *clipped, const ContactLaw *law, const
 // shape that is smaller by the depth c, where the depth is φ − c,
 //
 //   U = p′(0) E(0) + ∫ p″(c) E(c) dc.
+//
+// Of a law's derivative by its exponent there is no Hessian.
 void contact_field_law_press_shape(const ContactShape *shape, const ContactLaw *law, double time,
                                    const double tet[12], double rest_volume, double *energy,
                                    double gradient[12], double hessian[144]);

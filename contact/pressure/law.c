@@ -11,15 +11,41 @@ static double falling_power(double factor, double x, double exponent) {
   return factor == 0 ? 0 : factor * pow(x, exponent);
 }
 
+// P xⁿ with x = d/D.
+static ContactLawValue power_of(double pressure, double x, double depth, double n) {
+  return (ContactLawValue){pressure * pow(x, n), falling_power(pressure * n / depth, x, n - 1),
+                           falling_power(pressure * n * (n - 1) / (depth * depth), x, n - 2)};
+}
+
+// P xⁿ ln x.
+static ContactLawValue power_by_exponent(double pressure, double x, double depth, double n) {
+  if (!(x > 0)) return (ContactLawValue){0, 0, 0};
+  double log_x = log(x);
+  return (ContactLawValue){pressure * pow(x, n) * log_x, pressure / depth * pow(x, n - 1) * (1 + n * log_x),
+                           pressure / (depth * depth) * pow(x, n - 2) * (2 * n - 1 + n * (n - 1) * log_x)};
+}
+
 static ContactLawValue power_at(const ContactLaw *law, double depth) {
   double n = law->exponent, x = depth / law->depth;
-  return (ContactLawValue){law->pressure * pow(x, n), falling_power(law->pressure * n / law->depth, x, n - 1),
-                           falling_power(law->pressure * n * (n - 1) / (law->depth * law->depth), x, n - 2)};
+  switch (law->by) {
+  case CONTACT_LAW_BY_PRESSURE:
+    return power_of(1, x, law->depth, n);
+  case CONTACT_LAW_BY_DEPTH:
+    return power_of(-law->pressure * n / law->depth, x, law->depth, n);
+  case CONTACT_LAW_BY_EXPONENT:
+    return power_by_exponent(law->pressure, x, law->depth, n);
+  default:
+    return power_of(law->pressure, x, law->depth, n);
+  }
 }
 
 static ContactLawValue exponential_at(const ContactLaw *law, double depth) {
-  double x = depth / law->depth, grown = law->pressure * exp(x);
-  return (ContactLawValue){law->pressure * expm1(x), grown / law->depth, grown / (law->depth * law->depth)};
+  double D = law->depth, x = depth / D, grown = exp(x), pressure = law->pressure;
+  if (law->by == CONTACT_LAW_BY_DEPTH)
+    return (ContactLawValue){-pressure * x / D * grown, -pressure * (1 + x) / (D * D) * grown,
+                             -pressure * (2 + x) / (D * D * D) * grown};
+  if (law->by == CONTACT_LAW_BY_PRESSURE) pressure = 1;
+  return (ContactLawValue){pressure * expm1(x), pressure * grown / D, pressure * grown / (D * D)};
 }
 
 // ---- Tables.
@@ -41,12 +67,45 @@ static double slope_at(const ContactLaw *law, int k) {
   return before * after / (share * after + (1 - share) * before);
 }
 
+// Derivatives by the pressure in the law's row: of the pressure in row k, of the secant behind it, of the
+// slope there.
+static double pressure_by_row(const ContactLaw *law, int k) {
+  return k == law->row ? 1 : 0;
+}
+
+static double secant_by_row(const ContactLaw *law, int k) {
+  const double *row = law->table + 2 * (size_t)k;
+  return (pressure_by_row(law, k + 1) - pressure_by_row(law, k)) / (row[2] - row[0]);
+}
+
+static double slope_by_row(const ContactLaw *law, int k) {
+  if (k == 0) return secant_by_row(law, 0);
+  if (k == law->table_count - 1) return secant_by_row(law, k - 1);
+  const double *row = law->table + 2 * (size_t)k;
+  double before = secant(law, k - 1), after = secant(law, k);
+  double share = (1 + (row[2] - row[0]) / (row[2] - row[-2])) / 3;
+  double sum = share * after + (1 - share) * before;
+  return (share * after * after * secant_by_row(law, k - 1) +
+          (1 - share) * before * before * secant_by_row(law, k)) /
+         (sum * sum);
+}
+
+// What a cubic between two rows is made of.
+typedef struct Knot {
+  double pressure, slope;
+} Knot;
+
+static Knot knot_at(const ContactLaw *law, int k) {
+  if (law->by == CONTACT_LAW_BY_ROW) return (Knot){pressure_by_row(law, k), slope_by_row(law, k)};
+  return (Knot){law->table[2 * (size_t)k + 1], slope_at(law, k)};
+}
+
 static ContactLawValue table_at(const ContactLaw *law, double depth) {
   int low = 0, high = law->table_count - 1;
   const double *last = law->table + 2 * (size_t)high;
   if (depth >= last[0]) {
-    double slope = slope_at(law, high);
-    return (ContactLawValue){last[1] + slope * (depth - last[0]), slope, 0};
+    Knot end = knot_at(law, high);
+    return (ContactLawValue){end.pressure + end.slope * (depth - last[0]), end.slope, 0};
   }
   while (high - low > 1) {
     int middle = low + (high - low) / 2;
@@ -57,10 +116,11 @@ static ContactLawValue table_at(const ContactLaw *law, double depth) {
   }
   const double *row = law->table + 2 * (size_t)low;
   double span = row[2] - row[0], t = (depth - row[0]) / span;
-  double mean = secant(law, low), from = slope_at(law, low), to = slope_at(law, low + 1);
+  Knot begin = knot_at(law, low), end = knot_at(law, low + 1);
+  double mean = (end.pressure - begin.pressure) / span, from = begin.slope, to = end.slope;
   double square = 3 * mean - 2 * from - to,
          cube = from + to - 2 * mean; // Hermite's cubic in t, over the span
-  return (ContactLawValue){row[1] + span * t * (from + t * (square + t * cube)),
+  return (ContactLawValue){begin.pressure + span * t * (from + t * (square + t * cube)),
                            from + t * (2 * square + 3 * t * cube), (2 * square + 6 * t * cube) / span};
 }
 

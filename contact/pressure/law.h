@@ -24,8 +24,20 @@ typedef enum ContactLawKind {
   CONTACT_LAW_FORMULA,
 } ContactLawKind;
 
+// What is asked of a law: its value, or its derivative by one of its constants. Pressures, forces and
+// energies are linear in p(d), so with the derivative in its place they are the derivatives.
+typedef enum ContactLawBy {
+  CONTACT_LAW_VALUE,
+  CONTACT_LAW_BY_PRESSURE,
+  CONTACT_LAW_BY_DEPTH,
+  CONTACT_LAW_BY_EXPONENT, // above 1
+  CONTACT_LAW_BY_ROW,      // by the pressure in `row` of the table
+} ContactLawBy;
+
 typedef struct ContactLaw {
   ContactLawKind kind;
+  ContactLawBy by;
+  int row;
   double pressure, depth, exponent; // P [Pa], D [m], n
   double *table;                    // d [m], p [Pa], both increasing       (table_count, 2)
   int table_count;

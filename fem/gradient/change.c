@@ -52,6 +52,7 @@ static void clear(FemChange *change, const FemTangent *tangent) {
   memset(change->slips, 0, (size_t)tangent->interface_count * sizeof(double));
   change->party = change->placed = -1;
   change->elastic = change->gravity = 0;
+  change->law = (FemVariedLaw){0};
   for (int c = 0; c < 3; c++) change->shift[c] = change->spin[c] = change->rest[c] = 0;
 }
 
@@ -325,6 +326,7 @@ static void turn_forces(const FemChange *change, const FemTangent *tangent, int 
 Status fem_change_add_contact(FemChange *change, const FemTangent *tangent, int interface, double *force) {
   size_t values = values_of(tangent);
   bool moves = fem_change_moves(change, tangent, interface);
+  fem_varied_add_law(&change->law, interface, force);
   if (!moves && change->rates[interface] == 0) return STATUS_OK;
   memset(change->contact, 0, values * sizeof(double));
   TRY(fem_tangent_add_contact(tangent, interface, change->contact));
@@ -342,6 +344,8 @@ static Status find(FemChange *change, FemVaried *varied, const FemTangent *tange
   if (fem_parameter_is_of_material(parameter))
     return change_material(change, varied, tangent, parameter, follows);
   if (fem_parameter_is_of_motion(parameter)) return move(change, tangent, parameter);
+  if (fem_parameter_is_of_law(parameter))
+    return fem_varied_derive_law(varied, parameter, tangent->state, &change->law);
   switch (parameter->kind) {
   case FEM_PARAMETER_DENSITY:
     fem_model_parts_spread(tangent->system->model, parameter->part, change->masses);

@@ -12,13 +12,14 @@
 #include "fem/gradient/varied.h"
 
 typedef struct FemChange {
-  double *force;  // on all vertices, contact included                     (vertex_count, 3)
-  double *motion; // of prescribed coordinates, else 0                     (vertex_count, 3)
-  double *speed;  // of their velocities                                   (vertex_count, 3)
-  double *rates;  // ∂ ln κ/∂p of each interface                           (interface_count)
-  double *slips;  // ∂μ/∂p of each interface                               (interface_count)
-  double *masses; // ∂m/∂p of a density, else not set                      (vertex_count)
-  int party;      // the obstacle that moves; −1: none
+  double *force;    // on all vertices, contact included                     (vertex_count, 3)
+  double *motion;   // of prescribed coordinates, else 0                     (vertex_count, 3)
+  double *speed;    // of their velocities                                   (vertex_count, 3)
+  double *rates;    // ∂ ln κ/∂p of each interface                           (interface_count)
+  double *slips;    // ∂μ/∂p of each interface                               (interface_count)
+  FemVariedLaw law; // contact by ∂p/∂p of a pressure law; zeroed: none
+  double *masses;   // ∂m/∂p of a density, else not set                      (vertex_count)
+  int party;        // the obstacle that moves; −1: none
   double shift[3], spin[3];
   int placed;                // the body that stands elsewhere; −1: none
   double rest[3];            // by how much

@@ -9,9 +9,13 @@
 #include "fem/model/compliance/laws.h"
 #include "overlap/slopes.h"
 
+static bool has_model(const FemContactDef *contact) {
+  return contact->is_on && strcmp(contact->overlap, "clip") != 0;
+}
+
 bool fem_learned_is_there(const FemModel *model) {
   const FemContactDef *contact = &model->scene->contact;
-  return contact->is_on && strcmp(contact->overlap, "clip") != 0;
+  return has_model(contact) || (contact->is_on && fem_laws_are_wanted(contact));
 }
 
 static Status check_laws(const FemContactDef *contact) {
@@ -22,7 +26,7 @@ static Status check_laws(const FemContactDef *contact) {
 
 Status fem_learned_check(const FemModel *model) {
   OverlapModel overlap;
-  if (!fem_learned_is_there(model)) return STATUS_OK;
+  if (!has_model(&model->scene->contact)) return STATUS_OK;
   TRY(check_laws(&model->scene->contact));
   TRY(fem_effect_contact_create_overlap(model->scene, NULL, &overlap));
   bool has_slopes = overlap_slopes_are_there(&overlap);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the matrix lacks of contact by an overlap model that does not clip: the matrix has the forces of
-// clipping's polyhedra, the model's own are differentiated exactly (contact_system_turn). The difference is
+// What the matrix lacks of contact by an overlap model that does not clip, or with a pressure law: the matrix
+// has the forces of clipping's polyhedra and of a law's energy, the forces as they are are differentiated
+// exactly (contact_system_turn). The difference is
 // kept as blocks over the vertices of two elements, for products with it and with its transpose.
 #ifndef TETLAP_FEM_GRADIENT_LEARNED_H
 #define TETLAP_FEM_GRADIENT_LEARNED_H

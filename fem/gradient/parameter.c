@@ -6,7 +6,7 @@
 
 #include "fem/model/compliance/compliance.h"
 
-typedef enum Owner { OF_SCENE, OF_MATERIAL, OF_MOTION } Owner;
+typedef enum Owner { OF_SCENE, OF_MATERIAL, OF_MOTION, OF_LAW } Owner;
 
 // Of a load the unit is told by its kind.
 static const struct {
@@ -19,6 +19,7 @@ static const struct {
     [FEM_PARAMETER_OGDEN_EXPONENT] = {OF_MATERIAL, ""},
     [FEM_PARAMETER_OGDEN_SHARE] = {OF_MATERIAL, ""},
     [FEM_PARAMETER_FIBRE] = {OF_MATERIAL, "Pa"},
+    [FEM_PARAMETER_FIBRE_DIRECTION] = {OF_MATERIAL, ""},
     [FEM_PARAMETER_DAMPING] = {OF_MATERIAL, "s"},
     [FEM_PARAMETER_VISCOSITY] = {OF_MATERIAL, "Pa s"},
     [FEM_PARAMETER_BULK_VISCOSITY] = {OF_MATERIAL, "Pa s"},
@@ -33,6 +34,10 @@ static const struct {
     [FEM_PARAMETER_PLACE] = {OF_SCENE, "m"},
     [FEM_PARAMETER_CONTACT_STIFFNESS] = {OF_SCENE, "Pa/m"},
     [FEM_PARAMETER_PAIR_STIFFNESS] = {OF_SCENE, "Pa/m"},
+    [FEM_PARAMETER_LAW_PRESSURE] = {OF_LAW, "Pa"},
+    [FEM_PARAMETER_LAW_DEPTH] = {OF_LAW, "m"},
+    [FEM_PARAMETER_LAW_EXPONENT] = {OF_LAW, ""},
+    [FEM_PARAMETER_LAW_TABLE] = {OF_LAW, "Pa"},
     [FEM_PARAMETER_FRICTION] = {OF_SCENE, ""},
     [FEM_PARAMETER_PAIR_FRICTION] = {OF_SCENE, ""},
     [FEM_PARAMETER_START] = {OF_SCENE, "m/s"},
@@ -48,8 +53,19 @@ bool fem_parameter_is_of_motion(const FemParameter *parameter) {
   return kinds[parameter->kind].owner == OF_MOTION;
 }
 
+bool fem_parameter_is_of_law(const FemParameter *parameter) {
+  return kinds[parameter->kind].owner == OF_LAW;
+}
+
 static const FemContactDef *contact_of(const FemModel *model) {
   return &model->scene->contact;
+}
+
+const ContactLaw *fem_parameter_law(const FemModel *model, const FemParameter *parameter) {
+  const FemContactDef *contact = contact_of(model);
+  if (!contact->is_on || parameter->item >= contact->pair_count) return NULL;
+  const FemContactLawDef *def = parameter->item < 0 ? &contact->law : &contact->pairs[parameter->item].law;
+  return def->law.kind != CONTACT_LAW_LINEAR ? &def->law : NULL;
 }
 
 const FemConstraintDef *fem_parameter_motion(const FemModel *model, const FemParameter *parameter) {
@@ -122,6 +138,21 @@ static Status check_friction(const FemModel *model, const FemParameter *paramete
                      is_pair ? "the pair's friction" : "contact.friction");
 }
 
+static Status check_law(const FemModel *model, const FemParameter *parameter) {
+  const ContactLaw *law = fem_parameter_law(model, parameter);
+  if (!law) return status_fail(STATUS_INPUT, "the scene has no such law of contact");
+  if (parameter->kind == FEM_PARAMETER_LAW_EXPONENT && !(law->exponent > 1))
+    return status_fail(STATUS_INPUT, "the law's exponent is 1, below which there is no law: no derivative");
+  bool is_of_row = parameter->row > 0 && parameter->row < law->table_count && parameter->component == 1;
+  if (parameter->kind == FEM_PARAMETER_LAW_TABLE && !is_of_row)
+    return status_fail(
+        STATUS_INPUT,
+        "the law's table has %d rows of [d, p]; there are derivatives by p in the rows 1 to %d, "
+        "as table[1][1]",
+        law->table_count, law->table_count - 1);
+  return STATUS_OK;
+}
+
 static Status check_load(const FemModel *model, const FemParameter *parameter) {
   const FemBodyDef *body = &model->scene->bodies[parameter->body];
   if (parameter->item >= body->load_count)
@@ -179,7 +210,9 @@ static Status check_damping(const FemModel *model, const FemParameter *parameter
 static Status check_material(const FemModel *model, const FemParameter *parameter) {
   const FemModelBody *body = &model->bodies[parameter->body];
   const FemMaterial *material = &model->parts[parameter->part].material;
-  if (parameter->kind == FEM_PARAMETER_FIBRE && !(material->fibre_stiffness > 0))
+  bool is_of_fibres =
+      parameter->kind == FEM_PARAMETER_FIBRE || parameter->kind == FEM_PARAMETER_FIBRE_DIRECTION;
+  if (is_of_fibres && !(material->fibre_stiffness > 0))
     return status_fail(STATUS_INPUT, "body '%s' has no fibres", body->name);
   if (parameter->kind == FEM_PARAMETER_OGDEN_SHARE && material->exponents[parameter->row] == 0)
     return status_fail(STATUS_INPUT, "body '%s': the exponent of this share is 0", body->name);
@@ -196,6 +229,7 @@ Status fem_parameter_check(const FemModel *model, const FemParameter *parameter)
   if (is_damping(parameter)) return check_damping(model, parameter);
   if (fem_parameter_is_of_material(parameter)) return check_material(model, parameter);
   if (fem_parameter_is_of_motion(parameter)) return check_motion(model, parameter);
+  if (fem_parameter_is_of_law(parameter)) return check_law(model, parameter);
   switch (parameter->kind) {
   case FEM_PARAMETER_LOAD:
     return check_load(model, parameter);
@@ -225,6 +259,17 @@ static const char *idle_stiffness(const FemModel *model, const FemParameter *par
   return law->law.kind == CONTACT_LAW_LINEAR ? NULL : "a pressure law stands in its place";
 }
 
+// Pairs with a stiffness or a law of their own do not have the scene's.
+static const char *idle_law(const FemModel *model, const FemParameter *parameter) {
+  int parties = model->body_count + fem_scene_shape_count(model->scene);
+  for (int a = 0; a < model->body_count; a++)
+    for (int b = a; b < parties; b++)
+      if (fem_compliance_meets(model, a, b) && fem_parameter_pair(model, a, b) == parameter->item)
+        return NULL;
+  return parameter->item < 0 ? "all that can meet have a stiffness or a law of their own"
+                             : "another entry of contact.pairs stands in its place";
+}
+
 static const char *idle_of_law(const FemModel *model, const FemParameter *parameter, FemMaterialLaw law) {
   if (model->parts[parameter->part].material.law == law) return NULL;
   return law == FEM_MATERIAL_OGDEN ? "the body's law is not ogden" : "the body's law is not mooney_rivlin";
@@ -246,6 +291,7 @@ static const char *idle_damping(const FemModel *model, const FemParameter *param
 }
 
 const char *fem_parameter_idle(const FemModel *model, const FemParameter *parameter) {
+  if (fem_parameter_is_of_law(parameter)) return idle_law(model, parameter);
   switch (parameter->kind) {
   case FEM_PARAMETER_DAMPING:
     return idle_damping(model, parameter);
@@ -300,6 +346,8 @@ double *fem_parameter_of_material(FemMaterial *material, FemParameterKind kind, 
     return &material->shares[row];
   case FEM_PARAMETER_FIBRE:
     return &material->fibre_stiffness;
+  case FEM_PARAMETER_FIBRE_DIRECTION:
+    return &material->fibre_direction[row];
   case FEM_PARAMETER_DAMPING:
     return &material->damping;
   case FEM_PARAMETER_VISCOSITY:
@@ -338,8 +386,23 @@ static double value_of_motion(const FemModel *model, const FemParameter *paramet
   return *fem_parameter_of_motion(&motion, parameter);
 }
 
+static double value_of_law(const FemModel *model, const FemParameter *parameter) {
+  const ContactLaw *law = fem_parameter_law(model, parameter);
+  switch (parameter->kind) {
+  case FEM_PARAMETER_LAW_PRESSURE:
+    return law->pressure;
+  case FEM_PARAMETER_LAW_DEPTH:
+    return law->depth;
+  case FEM_PARAMETER_LAW_EXPONENT:
+    return law->exponent;
+  default:
+    return law->table[2 * (size_t)parameter->row + 1];
+  }
+}
+
 double fem_parameter_value(const FemModel *model, const FemParameter *parameter) {
   if (fem_parameter_is_of_motion(parameter)) return value_of_motion(model, parameter);
+  if (fem_parameter_is_of_law(parameter)) return value_of_law(model, parameter);
   switch (parameter->kind) {
   case FEM_PARAMETER_GRAVITY:
     return model->scene->has_gravity ? model->scene->gravity[parameter->component] : 0;

@@ -12,6 +12,7 @@ typedef enum FemParameterKind {
   FEM_PARAMETER_OGDEN_EXPONENT,    // of ogden, α of a term (`row`)
   FEM_PARAMETER_OGDEN_SHARE,       // of ogden, the share of a term (`row`) before it is normalised
   FEM_PARAMETER_FIBRE,             // modulus of a part's fibres [Pa]
+  FEM_PARAMETER_FIBRE_DIRECTION,   // of that, a component (`row`); its length does not act
   FEM_PARAMETER_DAMPING,           // β of a part, or (part −1) of all that have none of their own [s]
   FEM_PARAMETER_VISCOSITY,         // of a part [Pa s]
   FEM_PARAMETER_BULK_VISCOSITY,    // of a part [Pa s]
@@ -26,6 +27,10 @@ typedef enum FemParameterKind {
   FEM_PARAMETER_PLACE,             // a coordinate of where a body or an obstacle stands [m]
   FEM_PARAMETER_CONTACT_STIFFNESS, // κ as the scene gives it for all pairs
   FEM_PARAMETER_PAIR_STIFFNESS,    // κ of contact.pairs[item]
+  FEM_PARAMETER_LAW_PRESSURE,      // of contact.law, or of that of contact.pairs[item]: P [Pa]
+  FEM_PARAMETER_LAW_DEPTH,         // D [m]
+  FEM_PARAMETER_LAW_EXPONENT,      // n
+  FEM_PARAMETER_LAW_TABLE,         // the pressure in `row` of its table [Pa]
   FEM_PARAMETER_FRICTION,          // μ between any two that no pair says otherwise
   FEM_PARAMETER_PAIR_FRICTION,     // μ of contact.pairs[item]
   FEM_PARAMETER_START,             // a component of the velocity that a body starts with [m/s]
@@ -38,12 +43,13 @@ typedef struct FemParameter {
   int body;     // of the scene's bodies; −1: none
   int part;     // of the model's, where it is of a material; −1: none
   int obstacle; // of the scene's obstacles; −1: none
-  int item;     // of the body's loads or driven entries, of the contact's pairs
+  int item;     // of the body's loads or driven entries, of the contact's pairs; −1: none
   int row, component;
 } FemParameter;
 
 bool fem_parameter_is_of_material(const FemParameter *parameter); // acts by forces within its part
 bool fem_parameter_is_of_motion(const FemParameter *parameter);   // of a prescribed motion
+bool fem_parameter_is_of_law(const FemParameter *parameter);      // of a pressure law of contact
 
 // STATUS_INPUT: the scene does not give it, or no derivative is known; the message says why.
 Status fem_parameter_check(const FemModel *model, const FemParameter *parameter);
@@ -59,6 +65,8 @@ double *fem_parameter_of_motion(FemConstraintDef *motion, const FemParameter *pa
 
 // The prescribed motion that a parameter is of: driven[item] of its body, or its obstacle's.
 const FemConstraintDef *fem_parameter_motion(const FemModel *model, const FemParameter *parameter);
+// The law that a parameter is of; NULL: the scene has none there.
+const ContactLaw *fem_parameter_law(const FemModel *model, const FemParameter *parameter);
 // The entry of contact.pairs that gives two parties their stiffness or law, −1: none does.
 int fem_parameter_pair(const FemModel *model, int a, int b);
 // The same of their friction.

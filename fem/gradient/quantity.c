@@ -39,8 +39,8 @@ static Status check_energy(const FemModel *model, const FemQuantity *quantity) {
     return status_fail(STATUS_INPUT, "the scene has no effects.gravity");
   if (quantity->energies & FEM_QUANTITY_CONTACT && fem_learned_is_there(model))
     return status_fail(STATUS_INPUT,
-                       "the energy of contact has a derivative with contact.overlap: clip alone; "
-                       "energy:elastic and energy:gravity have theirs");
+                       "the energy of contact has a derivative with contact.overlap: clip alone, and without "
+                       "contact.law; energy:elastic and energy:gravity have theirs");
   return STATUS_OK;
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "fem/effect/contact/contact.h"
 #include "fem/gradient/difference.h"
 #include "fem/model/compliance/compliance.h"
 
@@ -27,6 +28,8 @@ void fem_varied_destroy(FemVaried *varied) {
   FemEffect *effects[] = {&varied->elasticity, &varied->volume, &varied->damping};
   for (int i = 0; i < 3; i++)
     if (effects[i]->self) effects[i]->ops->destroy(effects[i]->self);
+  if (varied->contact.self) varied->contact.ops->destroy(varied->contact.self);
+  memory_free(varied->scene.contact.pairs);
   memory_free(varied->model.parts);
   memory_free(varied->force);
   *varied = (FemVaried){0};
@@ -83,6 +86,10 @@ static void vary(FemModelPart *to, const FemModelPart *from, double ratio, FemPa
   }
 }
 
+static double square_of(const double x[3]) {
+  return x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
+}
+
 // So long that the change is not lost in rounding, and short beside where the law has a pole.
 static double step_of(const FemModelPart *part, FemParameterKind constant, int place) {
   FemMaterial material = part->material;
@@ -95,6 +102,8 @@ static double step_of(const FemModelPart *part, FemParameterKind constant, int p
     return SHARE;
   case FEM_PARAMETER_OGDEN_EXPONENT:
     return OF_EXPONENT * fabs(value);
+  case FEM_PARAMETER_FIBRE_DIRECTION:
+    return OF_EXPONENT * sqrt(square_of(material.fibre_direction));
   case FEM_PARAMETER_OGDEN_SHARE:
     return SHARE * (material.shares[0] + material.shares[1] + material.shares[2]);
   case FEM_PARAMETER_DAMPING: // the scene's, where the material has none
@@ -161,4 +170,42 @@ Status fem_varied_derive_stiffness(FemVaried *varied, int part, FemParameterKind
   }
   *material = kept;
   return status;
+}
+
+// ---- Pressure laws.
+
+static Status create_contact(FemVaried *varied) {
+  const FemContactDef *contact = &varied->model.scene->contact;
+  if (varied->contact.self) return STATUS_OK;
+  varied->scene = *varied->model.scene;
+  varied->scene.contact.pairs =
+      memory_copy(contact->pairs, (size_t)contact->pair_count, sizeof *contact->pairs);
+  if (!varied->scene.contact.pairs) return status_no_memory("a pressure law");
+  varied->model.scene = &varied->scene;
+  return create_effect(&varied->contact, &fem_effect_contact, &varied->model);
+}
+
+Status fem_varied_derive_law(FemVaried *varied, const FemParameter *parameter, const FemState *state,
+                             FemVariedLaw *derived) {
+  static const ContactLawBy constants[] = {[FEM_PARAMETER_LAW_PRESSURE] = CONTACT_LAW_BY_PRESSURE,
+                                           [FEM_PARAMETER_LAW_DEPTH] = CONTACT_LAW_BY_DEPTH,
+                                           [FEM_PARAMETER_LAW_EXPONENT] = CONTACT_LAW_BY_EXPONENT,
+                                           [FEM_PARAMETER_LAW_TABLE] = CONTACT_LAW_BY_ROW};
+  TRY(create_contact(varied));
+  FemContactDef *contact = &varied->scene.contact;
+  ContactLaw *law = parameter->item < 0 ? &contact->law.law : &contact->pairs[parameter->item].law.law;
+  const ContactLaw kept = *law;
+  ContactSystem *system = fem_effect_contact_system(varied->contact.self);
+  law->by = constants[parameter->kind];
+  law->row = parameter->row;
+  *derived = (FemVariedLaw){.system = system, .law = law};
+  Status status = contact_system_update(system, state->time, state->positions, state->velocities, 0, NULL);
+  if (!status) status = contact_evaluate(system, 0, state->time, state->positions, &derived->evaluation);
+  *law = kept;
+  return status;
+}
+
+void fem_varied_add_law(const FemVariedLaw *derived, int interface, double *force) {
+  if (derived->law && contact_system_layout(derived->system)->interfaces[interface].law == derived->law)
+    contact_system_add_force_of(derived->system, derived->evaluation, interface, force);
 }

@@ -44,6 +44,51 @@ START_TEST(slope_and_curve_are_the_derivatives) {
 }
 END_TEST
 
+// A law with its constant moved by a share.
+static ContactLaw moved_law(const ContactLaw *law, ContactLawBy by, double share, double *value,
+                            double table[10]) {
+  ContactLaw moved = *law;
+  memcpy(table, TABLE, sizeof TABLE);
+  moved.table = table;
+  double *places[] = {[CONTACT_LAW_BY_PRESSURE] = &moved.pressure,
+                      [CONTACT_LAW_BY_DEPTH] = &moved.depth,
+                      [CONTACT_LAW_BY_EXPONENT] = &moved.exponent,
+                      [CONTACT_LAW_BY_ROW] = &table[2 * law->row + 1]};
+  *value = *places[by];
+  *places[by] *= 1 + share;
+  return moved;
+}
+
+// A law by its constant is a law: value, slope and curve are those of a difference.
+static void check_by(ContactLaw law, ContactLawBy by, int row) {
+  static const double STEP = 1e-5;
+  double tables[2][10], value;
+  law.row = row;
+  ContactLaw above = moved_law(&law, by, STEP, &value, tables[0]);
+  ContactLaw below = moved_law(&law, by, -STEP, &value, tables[1]);
+  law.by = by;
+  for (int k = 1; k < 40; k++) {
+    double d = 0.0123 * k, step = 2 * STEP * value;
+    ContactLawValue at = contact_law_at(&law, d), up = contact_law_at(&above, d),
+                    down = contact_law_at(&below, d);
+    ck_assert_near(at.pressure, (up.pressure - down.pressure) / step,
+                   1e-8 * (fabs(at.pressure) + up.pressure));
+    ck_assert_near(at.slope, (up.slope - down.slope) / step, 1e-8 * (fabs(at.slope) + up.slope));
+    ck_assert_near(at.curve, (up.curve - down.curve) / step, 1e-8 * (fabs(at.curve) + fabs(up.curve) + 1e3));
+  }
+}
+
+START_TEST(a_law_by_its_constant_is_what_differences_say) {
+  check_by(law_of(HERTZ, NULL), CONTACT_LAW_BY_PRESSURE, 0);
+  check_by(law_of(HERTZ, NULL), CONTACT_LAW_BY_DEPTH, 0);
+  check_by(law_of(HERTZ, NULL), CONTACT_LAW_BY_EXPONENT, 0);
+  check_by(law_of(SQUARE, NULL), CONTACT_LAW_BY_EXPONENT, 0);
+  check_by(law_of(EXPONENTIAL, NULL), CONTACT_LAW_BY_PRESSURE, 0);
+  check_by(law_of(EXPONENTIAL, NULL), CONTACT_LAW_BY_DEPTH, 0);
+  for (int row = 1; row < 5; row++) check_by(law_of(ROWS, NULL), CONTACT_LAW_BY_ROW, row);
+}
+END_TEST
+
 START_TEST(a_table_goes_through_its_rows_and_never_falls) {
   Expression formula;
   ContactLaw law = law_of(ROWS, &formula);
@@ -293,6 +338,7 @@ END_TEST
 int main(void) {
   TCase *tests = tcase_create("law");
   tcase_add_loop_test(tests, slope_and_curve_are_the_derivatives, 0, LAWS);
+  tcase_add_test(tests, a_law_by_its_constant_is_what_differences_say);
   tcase_add_test(tests, a_table_goes_through_its_rows_and_never_falls);
   tcase_add_test(tests, laws_that_make_no_sense_are_refused);
   tcase_add_loop_test(tests, forces_are_minus_the_gradient_of_the_energy, 0, LAWS);

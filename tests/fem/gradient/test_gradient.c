@@ -71,8 +71,8 @@ static Status run(const Asked *asked, const char *override, Answer *answer) {
     scene_open_text(&scene, asked->scene);
   else
     scene_open(&scene, asked->scene,
-               override ? (const char *const[]){override, asked->setting, NULL}
-                        : (const char *const[]){asked->setting, NULL});
+               asked->setting ? (const char *const[]){asked->setting, override, NULL}
+                              : (const char *const[]){override, NULL});
   FemRunOptions options = {.observe = at_end, .observer = answer};
   Status status = read_words(asked, &scene.model, answer);
   if (!status) status = app_gradient_run(&scene.model, &answer->def, &options, &scene.result);
@@ -223,10 +223,45 @@ START_TEST(a_driven_slab_upon_obstacles_agrees_with_differences_of_runs) {
       .of = {"displacement:slab:z", "force:slab:ball:z", "force:floor:x", "moment:ball:y", "moment:slab:x",
              "reaction:slab:fixed[0]:x", "reaction:slab:driven[0]:z", "energy", "energy:contact"},
       .by = {BODY "material.young", BODY "material.poisson", BODY "material.mooney",
-             BODY "material.fibre.modulus", BODY "driven[0].velocity[2]", BODY "driven[0].amplitude[0]",
-             BODY "driven[0].frequency", BODY "driven[0].spin", "obstacles.ball.sphere.centre[2]",
-             "obstacles.ball.motion.velocity[1]", "obstacles.floor.halfspace.point[2]",
-             "contact.pairs[0].stiffness", "contact.stiffness", BODY "place.translate[0]"}};
+             BODY "material.fibre.modulus", BODY "material.fibre.direction[1]", BODY "driven[0].velocity[2]",
+             BODY "driven[0].amplitude[0]", BODY "driven[0].frequency", BODY "driven[0].spin",
+             "obstacles.ball.sphere.centre[2]", "obstacles.ball.motion.velocity[1]",
+             "obstacles.floor.halfspace.point[2]", "contact.pairs[0].stiffness", "contact.stiffness",
+             BODY "place.translate[0]"}};
+  check_against_runs(&asked);
+}
+END_TEST
+
+// The matrix of a law is that of its energy; the forces, which are summed at two points of a pair, differ.
+START_TEST(a_slab_pressed_by_laws_agrees_with_differences_of_runs) {
+  const Asked asked = {
+      .scene = "gradient_obstacles",
+      .setting =
+          "contact={law: {power: {pressure: 1e4, depth: 0.005, exponent: 1.7}}, pairs: [{bodies: [slab, "
+          "floor], law: {exponential: {pressure: 6e3, depth: 0.004}}}]}",
+      .of = {"displacement:slab:z", "force:slab:ball:z", "force:floor:x", "moment:ball:y", "energy:elastic"},
+      .by = {BODY "material.young", BODY "material.fibre.direction[0]", "contact.law.power.pressure",
+             "contact.law.power.depth", "contact.law.power.exponent",
+             "contact.pairs[0].law.exponential.pressure", "contact.pairs[0].law.exponential.depth",
+             "obstacles.ball.sphere.centre[2]"}};
+  check_against_runs(&asked);
+}
+END_TEST
+
+static const char *const laws[][3] = {
+    {"contact={law: {power: {pressure: 1e4, depth: 0.005, exponent: 1.5}}}", "contact.law.power.exponent",
+     "contact.law.power.depth"},
+    {"contact={law: {exponential: {pressure: 1e4, depth: 0.005}}}", "contact.law.exponential.pressure",
+     "contact.law.exponential.depth"},
+    {"contact={law: {table: [[0, 0], [0.002, 3e3], [0.004, 9e3], [0.01, 5e4]]}}", "contact.law.table[1][1]",
+     "contact.law.table[2][1]"}};
+
+START_TEST(blocks_pressed_by_a_law_agree_with_differences_of_runs) {
+  const Asked asked = {
+      .scene = "gradient_blocks",
+      .setting = laws[_i][0],
+      .of = {"displacement:upper:z", "position:upper:3:x", "force:lower:upper:z", "moment:lower:upper:y"},
+      .by = {laws[_i][1], laws[_i][2], "bodies.lower.material.young", "bodies.upper.place.translate[1]"}};
   check_against_runs(&asked);
 }
 END_TEST
@@ -336,8 +371,8 @@ END_TEST
 
 // ---- What does not act.
 
-static void expect_idle(const char *scene, const char *key, const char *why) {
-  const Asked asked = {.scene = scene, .of = {"displacement:slab:z"}, .by = {key}};
+static void expect_idle_with(const char *scene, const char *setting, const char *key, const char *why) {
+  const Asked asked = {.scene = scene, .setting = setting, .of = {"displacement:slab:z"}, .by = {key}};
   Answer answer;
   ck_assert_ok(run(&asked, NULL, &answer));
   ck_assert_ptr_nonnull(answer.idle[0]);
@@ -346,12 +381,20 @@ static void expect_idle(const char *scene, const char *key, const char *why) {
   destroy(&answer);
 }
 
+static void expect_idle(const char *scene, const char *key, const char *why) {
+  expect_idle_with(scene, NULL, key, why);
+}
+
 START_TEST(what_does_not_act_has_the_derivative_0_and_a_reason) {
   expect_idle("gradient_obstacles", "bodies.slab.material.damping", "motions alone");
   expect_idle("gradient_obstacles", "contact.viscosity", "motions alone");
   expect_idle("gradient_obstacles", "bodies.slab.material.ogden.shares[1]", "law is not ogden");
   expect_idle("gradient_shapes", "bodies.slab.material.mooney", "law is not mooney_rivlin");
   expect_idle("gradient_shapes", "bodies.slab.material.ogden.exponents[2]", "share is 0");
+  expect_idle_with("gradient_obstacles",
+                   "contact={law: {table: [[0, 0], [0.01, 1e5]]}, pairs: [{bodies: [slab, floor], stiffness: "
+                   "2e6}, {bodies: [slab, ball], stiffness: 4e6}]}",
+                   "contact.law.table[1][1]", "law of their own");
 }
 END_TEST
 
@@ -433,6 +476,13 @@ START_TEST(parameters_without_a_derivative_are_refused_by_name) {
   refuse(STATIC, NU, "", "", "contact.stiffness", "chosen");
   refuse(STATIC, NU, "", "stiffness: 1e6", "contact.pairs[0].stiffness", "there are 0 pairs");
   refuse(STATIC, NU, "", NULL, "bodies.block.material.fibre.modulus", "no fibres");
+  refuse(STATIC, NU, "", NULL, "bodies.block.material.fibre.direction[2]", "no fibres");
+  refuse(STATIC, NU, "", "stiffness: 1e6", "contact.law.power.depth", "no such law");
+  refuse(STATIC, NU, "", "law: {power: {pressure: 1, depth: 1, exponent: 1}}", "contact.law.power.exponent",
+         "exponent is 1");
+  refuse(STATIC, NU, "", "law: {power: {pressure: 1, depth: 1, exponent: 2}}", "contact.law.table[1][1]",
+         "does not have this key");
+  refuse(STATIC, NU, "", "law: {table: [[0, 0], [1, 1]]}", "contact.law.table[0][1]", "the rows 1 to 1");
   refuse(STATIC, NU, load, NULL, "bodies.block.loads[0].force[2]", "loads[0] is zero");
   refuse(STATIC, NU, load, NULL, "bodies.block.loads[1].force[2]", "no loads[1]");
   refuse(STATIC, NU, load, NULL, "bodies.block.loads[4294967296].force[2]", "no loads[2147483647]");
@@ -473,6 +523,8 @@ START_TEST(quantities_that_are_not_there_are_refused_by_name) {
   write_block(text, STATIC, NU, "", NULL);
   expect_refusal_of(text, "force:block:z", YOUNG, "no contact");
   expect_refusal_of(text, "energy:contact", YOUNG, "no contact");
+  write_block(text, STATIC, NU, "", "law: 1e6*d");
+  expect_refusal_of(text, "energy:contact", YOUNG, "without contact.law");
   write_block(text, STATIC, NU, "", "stiffness: 1e6, overlap: geo");
   expect_refusal_of(text, "energy", YOUNG, "clip alone");
   char word[256];
@@ -576,6 +628,8 @@ int main(void) {
   tcase_add_loop_test(test_case, a_ball_on_a_slab_by_learned_overlaps_agrees_with_differences_of_runs, 0, 3);
   tcase_add_loop_test(test_case, slopes_by_weights_agree_with_differences_of_runs, 0, 4);
   tcase_add_test(test_case, a_driven_slab_upon_obstacles_agrees_with_differences_of_runs);
+  tcase_add_test(test_case, a_slab_pressed_by_laws_agrees_with_differences_of_runs);
+  tcase_add_loop_test(test_case, blocks_pressed_by_a_law_agree_with_differences_of_runs, 0, 3);
   tcase_add_test(test_case, quadratic_elements_between_moving_shapes_agree_with_differences_of_runs);
   tcase_add_test(test_case, a_chosen_stiffness_that_follows_agrees_with_differences_of_runs);
   tcase_add_test(test_case, a_chosen_stiffness_that_is_kept_is_another_derivative);
