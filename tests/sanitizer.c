@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Part of every program of the preset asan: what the sanitizers shall not take for an error of ours.
+// Part of every program of the presets asan and tsan: what the sanitizers shall not take for an error of ours.
 #include <stddef.h>
 
 const char *__asan_default_options(void);

@@ -149,7 +149,9 @@ static int smaller(int a, int b) {
 }
 
 // C −= A Aᵀ of rows [begin, end) of A (…, k): columns up to `last` of its lower triangle, by tiles.
+// A taskloop over nothing makes 2³² tasks where clang compiles it, so there is none.
 static void subtract_tiles(int begin, int end, int last, int k, FemDense a, FemDense c) {
+  if (begin >= last) return;
 #pragma omp taskloop collapse(2) grainsize(1) firstprivate(begin, end, last, k, a, c)
   for (int column = begin; column < last; column += TILE)
     for (int row = begin; row < end; row += TILE) {
@@ -167,6 +169,7 @@ static bool eliminate_large(int own, int height, FemDense panel, FemDense update
     int width = smaller(BLOCK, own - at), next = at + width;
     FemDense block = part(panel, 0, at);
     if (!fem_dense_factorise(width, part(block, at, 0))) return false;
+    if (next == height) break;
 #pragma omp taskloop grainsize(1) firstprivate(block, at, width, next, height)
     for (int row = next; row < height; row += TILE)
       fem_dense_divide(smaller(TILE, height - row), width, part(block, at, 0), part(block, row, 0));
@@ -341,6 +344,7 @@ static void go_down(FemFrontFactor *factor, int f) {
   for (int at = 0; at < front->own; at += BLOCK) {
     int end = smaller(at + BLOCK, front->own);
     fem_sweep_forward(&panel, at, end, x);
+    if (end == panel.height) break;
 #pragma omp taskloop grainsize(1) firstprivate(panel, at, end, x, below)
     for (int row = end; row < panel.height; row += ROWS) {
       int last = smaller(row + ROWS, panel.height), middle = smaller(last, panel.own);
