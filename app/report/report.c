@@ -172,12 +172,6 @@ static void record_rest(AppReport *report, Record *data) {
   record_adopt(data, "live", report->live);
   report->comparison = report->pareto = report->sweep = report->verdict = report->live = NULL;
   record_stresses(report, data);
-  if (report->bench_count == 0) return;
-  RecordList *benches = record_list(data, "benches");
-  for (int k = 0; k < report->bench_count; k++) {
-    record_adopt(record_append(benches), "rows", report->benches[k]);
-    report->benches[k] = NULL;
-  }
 }
 
 // JSON inside a page: no `<` may stand in it, lest it end the element; it can only be part of a text.
@@ -348,7 +342,6 @@ Status app_report_write(AppReport *report, const char *path) {
 
 void app_report_destroy(AppReport *report) {
   for (int r = 0; r < report->run_count; r++) app_report_run_destroy(&report->runs[r]);
-  for (int k = 0; k < report->bench_count; k++) record_destroy(report->benches[k]);
   for (int k = 0; k < report->stress_count; k++) record_destroy(report->stresses[k]);
   record_destroy(report->comparison);
   record_destroy(report->pareto);

@@ -8,7 +8,7 @@
 
 #include "app/report/run.h"
 
-enum { APP_REPORT_MAX_RUNS = 16, APP_REPORT_MAX_BENCHES = 8, APP_REPORT_MAX_STRESSES = 16 };
+enum { APP_REPORT_MAX_RUNS = 16, APP_REPORT_MAX_STRESSES = 16 };
 
 // What the page shall show; records may be NULL. All owned.
 typedef struct AppReport {
@@ -20,8 +20,6 @@ typedef struct AppReport {
   Record *sweep;      // sweep.json
   Record *verdict;    // verdict.json
   Record *live;       // how far the run is that the page is to follow (app/view); NULL: a page for itself
-  Record *benches[APP_REPORT_MAX_BENCHES];
-  int bench_count;
   Record *stresses[APP_REPORT_MAX_STRESSES]; // of `tetlap stress --json`
   int stress_count;
   bool has_surface_only; // leaves out what lies inside the bodies

@@ -2,8 +2,8 @@
 // Work that goes on in a thread of its own while the caller computes, as writing a file: one piece at a time.
 // OpenMP's regions within it have one thread, signals go to other threads. Where the program computes on one
 // thread, or no further one can be had, the work is done at once.
-#ifndef TETLAP_BASE_BACKGROUND_H
-#define TETLAP_BASE_BACKGROUND_H
+#ifndef TETLAP_BASE_FILES_BACKGROUND_H
+#define TETLAP_BASE_FILES_BACKGROUND_H
 
 #include <pthread.h>
 #include <stdbool.h>

@@ -3,8 +3,8 @@
 // files beneath that folder, by paths that begin with its name, and follows no link. Each component is opened
 // from the one before, so a folder that is replaced by a link meanwhile is not followed; a pipe cannot block
 // it.
-#ifndef TETLAP_BASE_CONFINE_H
-#define TETLAP_BASE_CONFINE_H
+#ifndef TETLAP_BASE_FILES_CONFINE_H
+#define TETLAP_BASE_FILES_CONFINE_H
 
 #include <stdbool.h>
 

@@ -7,8 +7,8 @@
 //   DIR/../../share/tetlap          lib/x86_64-linux-gnu/libtetlap-overlap.so
 //
 // Below, names are those of the source tree; a folder that tetlap is built in has such a share/tetlap too.
-#ifndef TETLAP_BASE_DATA_H
-#define TETLAP_BASE_DATA_H
+#ifndef TETLAP_BASE_FILES_DATA_H
+#define TETLAP_BASE_FILES_DATA_H
 
 #include <stddef.h>
 

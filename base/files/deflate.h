@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Compression and decompression in zlib's format (RFC 1950), which browsers and VTK read too. The one place
 // where zlib is used.
-#ifndef TETLAP_BASE_DEFLATE_H
-#define TETLAP_BASE_DEFLATE_H
+#ifndef TETLAP_BASE_FILES_DEFLATE_H
+#define TETLAP_BASE_FILES_DEFLATE_H
 
 #include <stdbool.h>
 #include <stddef.h>

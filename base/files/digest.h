@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A digest of contents: detects accidental changes, not forgery.
-#ifndef TETLAP_BASE_DIGEST_H
-#define TETLAP_BASE_DIGEST_H
+#ifndef TETLAP_BASE_FILES_DIGEST_H
+#define TETLAP_BASE_FILES_DIGEST_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -2,8 +2,8 @@
 // Files that appear whole or not at all: written beside their final place under a temporary name, flushed,
 // renamed. A pipe or a device, as /dev/stdout, receives the whole content at the end. Of several ranks
 // (base/ranks.h) the first writes and removes; what others write is discarded.
-#ifndef TETLAP_BASE_FILE_H
-#define TETLAP_BASE_FILE_H
+#ifndef TETLAP_BASE_FILES_FILE_H
+#define TETLAP_BASE_FILES_FILE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -6,8 +6,8 @@
 // with a whole piece; only a process that is killed during a write may leave a part of one. A mark describes
 // the file up to a moment. A process that continues from it later checks that this part is unchanged and cuts
 // off what came after it, or refuses the file. Of several ranks (base/ranks.h) the first writes.
-#ifndef TETLAP_BASE_JOURNAL_H
-#define TETLAP_BASE_JOURNAL_H
+#ifndef TETLAP_BASE_FILES_JOURNAL_H
+#define TETLAP_BASE_FILES_JOURNAL_H
 
 #include <stddef.h>
 #include <stdint.h>

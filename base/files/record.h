@@ -2,8 +2,8 @@
 // A JSON document that is built up and written, or read: the one place where jansson is used outside net/.
 // Numbers that are not finite become null. After a failed allocation the handles are NULL, which every call
 // accepts.
-#ifndef TETLAP_BASE_RECORD_H
-#define TETLAP_BASE_RECORD_H
+#ifndef TETLAP_BASE_FILES_RECORD_H
+#define TETLAP_BASE_FILES_RECORD_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -2,8 +2,8 @@
 // The place that a path to be written stands for: a link is followed, also to a file that does not exist yet.
 // A file is replaced as a whole; a pipe, a terminal, a device or a descriptor (/dev/stdout, /dev/fd/3) is
 // written into.
-#ifndef TETLAP_BASE_TARGET_H
-#define TETLAP_BASE_TARGET_H
+#ifndef TETLAP_BASE_FILES_TARGET_H
+#define TETLAP_BASE_FILES_TARGET_H
 
 #include <stdbool.h>
 

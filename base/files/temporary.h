@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Temporary files and folders, in $TMPDIR or, if that is not set, in /tmp.
-#ifndef TETLAP_BASE_TEMPORARY_H
-#define TETLAP_BASE_TEMPORARY_H
+#ifndef TETLAP_BASE_FILES_TEMPORARY_H
+#define TETLAP_BASE_FILES_TEMPORARY_H
 
 #include "base/status.h"
 

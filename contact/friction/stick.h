@@ -35,8 +35,8 @@
 // so that the energies add up.
 //
 // Either side may be the slave, or, in self-contact, both with half of k and of μ each (weights ½, ½).
-#ifndef TETLAP_CONTACT_STICK_H
-#define TETLAP_CONTACT_STICK_H
+#ifndef TETLAP_CONTACT_FRICTION_STICK_H
+#define TETLAP_CONTACT_FRICTION_STICK_H
 
 #include <stdbool.h>
 

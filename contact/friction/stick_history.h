@@ -6,8 +6,8 @@
 //   dissipated [J]
 //   forces [N] on side 0, areas [m²] that stick and that slide    (interface_count, 3), (interface_count, 2)
 //   entries, by interface, then by vertex                         (entry_count, CONTACT_STICK_ENTRY_SIZE)
-#ifndef TETLAP_CONTACT_STICK_HISTORY_H
-#define TETLAP_CONTACT_STICK_HISTORY_H
+#ifndef TETLAP_CONTACT_FRICTION_STICK_HISTORY_H
+#define TETLAP_CONTACT_FRICTION_STICK_HISTORY_H
 
 #include <stdbool.h>
 #include <stddef.h>

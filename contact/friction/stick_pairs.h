@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Between a contact system with the potential `field` and friction by elastic stick
 // (contact/friction/stick.h): which of two is the slave, and what the pairs of an evaluation hand over.
-#ifndef TETLAP_CONTACT_STICK_PAIRS_H
-#define TETLAP_CONTACT_STICK_PAIRS_H
+#ifndef TETLAP_CONTACT_FRICTION_STICK_PAIRS_H
+#define TETLAP_CONTACT_FRICTION_STICK_PAIRS_H
 
 #include "contact/friction/stick.h"
 #include "contact/system.h"

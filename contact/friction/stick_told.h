@@ -2,8 +2,8 @@
 // What friction by elastic stick (contact/friction/stick.h) tells at the vertices as they were given: whether
 // they slide, how far they have slid, and what that dissipated. Slip, way and work are those of the slave; of
 // several interfaces, and of both halves in self-contact, they are summed.
-#ifndef TETLAP_CONTACT_STICK_TOLD_H
-#define TETLAP_CONTACT_STICK_TOLD_H
+#ifndef TETLAP_CONTACT_FRICTION_STICK_TOLD_H
+#define TETLAP_CONTACT_FRICTION_STICK_TOLD_H
 
 #include "contact/friction/stick.h"
 

@@ -9,8 +9,8 @@
 // vibroimpact, eq. 9: λ xⁿ ẋ beside k xⁿ) with n = 1: it begins from nothing at touch, where a plain dashpot
 // would jump, and never gives energy. Two bodies that move together as one rigid body feel none, and forces
 // and torques balance. Parts that separate faster than c/η (in depths a second) pull.
-#ifndef TETLAP_CONTACT_VISCOSITY_H
-#define TETLAP_CONTACT_VISCOSITY_H
+#ifndef TETLAP_CONTACT_FRICTION_VISCOSITY_H
+#define TETLAP_CONTACT_FRICTION_VISCOSITY_H
 
 #include <stddef.h>
 

@@ -30,8 +30,8 @@
 // On outer faces g_B = −|g_B| n_f and the main term is positive semidefinite; on others it is, summed with
 // the neighbour's, the jump of g across the face. Turning is of the relative size depth/h. There is no 1/sin
 // θ.
-#ifndef TETLAP_CONTACT_FIELD_H
-#define TETLAP_CONTACT_FIELD_H
+#ifndef TETLAP_CONTACT_PRESSURE_FIELD_H
+#define TETLAP_CONTACT_PRESSURE_FIELD_H
 
 #include "contact/pressure/field_pair.h"
 #include "contact/search/layout.h"

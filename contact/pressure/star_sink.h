@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Stiffness by the vertices of the contact mesh, handed on by those that carry them
 // (contact/surface/stars.h): Tᵀ K T with T the weights.
-#ifndef TETLAP_CONTACT_STAR_SINK_H
-#define TETLAP_CONTACT_STAR_SINK_H
+#ifndef TETLAP_CONTACT_PRESSURE_STAR_SINK_H
+#define TETLAP_CONTACT_PRESSURE_STAR_SINK_H
 
 #include "contact/stiffness.h"
 #include "contact/surface/stars.h"

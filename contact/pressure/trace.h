@@ -14,8 +14,8 @@
 // a rim where it falls to 0, where the mean is far too large. A vertex that no cell of its pairs lies before
 // or behind, along their forces, is beyond the edge of the other body, and one that is farther outside of
 // that body than its samples are deep is beyond the rim: 0.
-#ifndef TETLAP_CONTACT_TRACE_H
-#define TETLAP_CONTACT_TRACE_H
+#ifndef TETLAP_CONTACT_PRESSURE_TRACE_H
+#define TETLAP_CONTACT_PRESSURE_TRACE_H
 
 #include "contact/evaluation.h"
 #include "contact/surface/stars.h"

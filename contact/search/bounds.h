@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bounding boxes of tetrahedra: min x, y, z, max x, y, z.
-#ifndef TETLAP_CONTACT_BOUNDS_H
-#define TETLAP_CONTACT_BOUNDS_H
+#ifndef TETLAP_CONTACT_SEARCH_BOUNDS_H
+#define TETLAP_CONTACT_SEARCH_BOUNDS_H
 
 #include <math.h>
 #include <stddef.h>

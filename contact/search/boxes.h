@@ -3,8 +3,8 @@
 // curve through space (Morton 1966), and bounded by groups of eight, of eight groups, and so on. Each box of
 // the first goes down from the top. Memory O(n + pairs), time of boxes that are not much longer than their
 // distances O(n log n + pairs).
-#ifndef TETLAP_CONTACT_BOXES_H
-#define TETLAP_CONTACT_BOXES_H
+#ifndef TETLAP_CONTACT_SEARCH_BOXES_H
+#define TETLAP_CONTACT_SEARCH_BOXES_H
 
 #include <stddef.h>
 

@@ -3,8 +3,8 @@
 // Boxes are cut to the shared bounds of two bodies, grown by half the margin, and intersected
 // (contact/search/boxes.h). As long as no vertex has moved by more than half the
 // margin since the list was made, the list holds every overlapping pair.
-#ifndef TETLAP_CONTACT_BROAD_H
-#define TETLAP_CONTACT_BROAD_H
+#ifndef TETLAP_CONTACT_SEARCH_BROAD_H
+#define TETLAP_CONTACT_SEARCH_BROAD_H
 
 #include <stddef.h>
 

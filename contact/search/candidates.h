@@ -3,8 +3,8 @@
 // by how much its two parties may come nearer before a new search. While no pair is near the margin is the
 // distance of the parties, then half an element, so that no element passes through another between two
 // searches. Motion that two bodies have in common, as in a falling stack, does not use the margin up.
-#ifndef TETLAP_CONTACT_CANDIDATES_H
-#define TETLAP_CONTACT_CANDIDATES_H
+#ifndef TETLAP_CONTACT_SEARCH_CANDIDATES_H
+#define TETLAP_CONTACT_SEARCH_CANDIDATES_H
 
 #include "contact/search/broad.h"
 #include "contact/search/layout.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far the vertices of a surface are from what they may touch: from the triangles of another body's
 // surface, or the surface of an obstacle without elements. Potential `field` only.
-#ifndef TETLAP_CONTACT_GAP_H
-#define TETLAP_CONTACT_GAP_H
+#ifndef TETLAP_CONTACT_SEARCH_GAP_H
+#define TETLAP_CONTACT_SEARCH_GAP_H
 
 #include "contact/search/candidates.h"
 #include "contact/surface/stars.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The constant part of a contact system: the definition, rest volumes, and which parties can meet.
-#ifndef TETLAP_CONTACT_LAYOUT_H
-#define TETLAP_CONTACT_LAYOUT_H
+#ifndef TETLAP_CONTACT_SEARCH_LAYOUT_H
+#define TETLAP_CONTACT_SEARCH_LAYOUT_H
 
 #include <stddef.h>
 

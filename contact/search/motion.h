@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bounds of by how much two parties, bodies or shapes, come nearer.
-#ifndef TETLAP_CONTACT_MOTION_H
-#define TETLAP_CONTACT_MOTION_H
+#ifndef TETLAP_CONTACT_SEARCH_MOTION_H
+#define TETLAP_CONTACT_SEARCH_MOTION_H
 
 #include "base/vec3.h"
 #include "contact/search/layout.h"

@@ -7,8 +7,8 @@
 // out by half of the skin; it then holds all points within that distance. Where a face separates two enlarged
 // cells, the cells themselves are farther apart than the skin. This costs as much as one pass over the
 // candidates.
-#ifndef TETLAP_CONTACT_NEAR_H
-#define TETLAP_CONTACT_NEAR_H
+#ifndef TETLAP_CONTACT_SEARCH_NEAR_H
+#define TETLAP_CONTACT_SEARCH_NEAR_H
 
 #include "contact/search/candidates.h"
 

@@ -5,8 +5,8 @@
 //   3. have a vertex on the surface, at least one of the two: others overlap only after a whole layer of
 //      elements has gone through another, or where the interior is turned inside out.
 // Bodies that do not meet themselves cost nothing here.
-#ifndef TETLAP_CONTACT_SELF_H
-#define TETLAP_CONTACT_SELF_H
+#ifndef TETLAP_CONTACT_SEARCH_SELF_H
+#define TETLAP_CONTACT_SEARCH_SELF_H
 
 #include "contact/def.h"
 #include "contact/search/boxes.h"

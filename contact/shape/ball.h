@@ -22,8 +22,8 @@
 // and gives the mean depth (R² − r²)/(2R) of the potential `field` in closed form.
 //
 // Rounding: about 1e-16 R² h of a tetrahedron of size h, so relative to its volume 1e-16 (R/h)².
-#ifndef TETLAP_CONTACT_BALL_H
-#define TETLAP_CONTACT_BALL_H
+#ifndef TETLAP_CONTACT_SHAPE_BALL_H
+#define TETLAP_CONTACT_SHAPE_BALL_H
 
 #include <stdbool.h>
 

@@ -12,8 +12,8 @@
 // ∂V/∂x_a = Σ_{f∋a} n_f ∫_{P_f} β_a dA, β the barycentric coordinates. Every polygon is clipped for itself,
 // so no sign of a distance that is only rounding can tear the surface open: an error ε of a distance moves a
 // polygon's edge by ε.
-#ifndef TETLAP_CONTACT_CONVEX_H
-#define TETLAP_CONTACT_CONVEX_H
+#ifndef TETLAP_CONTACT_SHAPE_CONVEX_H
+#define TETLAP_CONTACT_SHAPE_CONVEX_H
 
 #include <stdbool.h>
 

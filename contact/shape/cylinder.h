@@ -15,8 +15,8 @@
 // with K = R but for a cylinder of less radius that shares the depth's slope. With w what the first is more
 // than the second, φ = (R² − r²)/(2K) − max(w, 0). w > 0 is again a circle as seen along z on every plane,
 // and w vanishes at its lower end: the same sum with z₀ = z − w.
-#ifndef TETLAP_CONTACT_CYLINDER_H
-#define TETLAP_CONTACT_CYLINDER_H
+#ifndef TETLAP_CONTACT_SHAPE_CYLINDER_H
+#define TETLAP_CONTACT_SHAPE_CYLINDER_H
 
 #include <stdbool.h>
 

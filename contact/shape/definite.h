@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Symmetric matrices of a tetrahedron's twelve coordinates: derivatives of a gradient by central differences,
 // positive semidefinite but for rounding.
-#ifndef TETLAP_CONTACT_DEFINITE_H
-#define TETLAP_CONTACT_DEFINITE_H
+#ifndef TETLAP_CONTACT_SHAPE_DEFINITE_H
+#define TETLAP_CONTACT_SHAPE_DEFINITE_H
 
 enum { CONTACT_DEFINITE_SIZE = 12 };
 

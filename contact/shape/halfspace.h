@@ -17,8 +17,8 @@
 //
 // h(s) = max(−s, 0)⁴, convex in the heights. By Leibniz' rule [t₀ … t_n] s g = t₀ [t₀ … t_n] g + [t₁ … t_n] g
 // with t₀ the lowest, again in terms of one sign.
-#ifndef TETLAP_CONTACT_HALFSPACE_H
-#define TETLAP_CONTACT_HALFSPACE_H
+#ifndef TETLAP_CONTACT_SHAPE_HALFSPACE_H
+#define TETLAP_CONTACT_SHAPE_HALFSPACE_H
 
 // The solid is { x : normal·(x − point) ≤ 0 }; `normal` has unit length. Either orientation of the
 // tetrahedron. V [m³], and, where not NULL, dV/dx of the four vertices [m²]. V is C² where one vertex crosses

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Obstacles without elements: half-spaces, balls, cylinders and convex solids, at rest or moving. Each
 // function has one `case` a kind.
-#ifndef TETLAP_CONTACT_SHAPE_H
-#define TETLAP_CONTACT_SHAPE_H
+#ifndef TETLAP_CONTACT_SHAPE_SHAPE_H
+#define TETLAP_CONTACT_SHAPE_SHAPE_H
 
 #include "base/vec3.h"
 #include "contact/def.h"

@@ -15,8 +15,8 @@
 // acts on the cell acts on the four vertices of that.
 //
 // For the other potentials the cells are the tetrahedra.
-#ifndef TETLAP_CONTACT_MESH_H
-#define TETLAP_CONTACT_MESH_H
+#ifndef TETLAP_CONTACT_SURFACE_MESH_H
+#define TETLAP_CONTACT_SURFACE_MESH_H
 
 #include <stddef.h>
 

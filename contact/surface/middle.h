@@ -6,8 +6,8 @@
 // rises by all of it, along the middle of a wedge by the sine of half of its angle: so the way ends in the
 // middle, and not in a thicker part of the body. A cell has the largest depth that the ways from its
 // tetrahedron's vertices, and its own virtual vertex, lead to.
-#ifndef TETLAP_CONTACT_MIDDLE_H
-#define TETLAP_CONTACT_MIDDLE_H
+#ifndef TETLAP_CONTACT_SURFACE_MIDDLE_H
+#define TETLAP_CONTACT_SURFACE_MIDDLE_H
 
 #include "contact/surface/mesh.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How a body's surface curves, and how fine it is meshed there.
-#ifndef TETLAP_CONTACT_ROUNDNESS_H
-#define TETLAP_CONTACT_ROUNDNESS_H
+#ifndef TETLAP_CONTACT_SURFACE_ROUNDNESS_H
+#define TETLAP_CONTACT_SURFACE_ROUNDNESS_H
 
 #include "contact/def.h"
 

@@ -5,8 +5,8 @@
 // An edge is a crease where its faces' normals make more than a given angle, where it has no two faces (at a
 // part of the boundary that is no surface), or where more than two meet. The sector of a vertex and a face is
 // what is reached from that face about the vertex without crossing a crease.
-#ifndef TETLAP_CONTACT_SKIN_H
-#define TETLAP_CONTACT_SKIN_H
+#ifndef TETLAP_CONTACT_SURFACE_SKIN_H
+#define TETLAP_CONTACT_SURFACE_SKIN_H
 
 #include "base/vec3.h"
 #include "contact/def.h"

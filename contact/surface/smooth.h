@@ -18,8 +18,8 @@
 // face on the curved surface; else from a point o inside, at λ_f = δ/height_f for the faces on the surface, ¼
 // for the others, δ as in contact/surface/mesh.h. Which triangles a face is cut into depends on the face
 // alone, so neighbours fit.
-#ifndef TETLAP_CONTACT_SMOOTH_H
-#define TETLAP_CONTACT_SMOOTH_H
+#ifndef TETLAP_CONTACT_SURFACE_SMOOTH_H
+#define TETLAP_CONTACT_SURFACE_SMOOTH_H
 
 #include "contact/surface/smooth_points.h"
 

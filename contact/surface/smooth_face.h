@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A face between divided and whole edges, in triangles. Which ones depends on the face alone, so neighbours
 // fit.
-#ifndef TETLAP_CONTACT_SMOOTH_FACE_H
-#define TETLAP_CONTACT_SMOOTH_FACE_H
+#ifndef TETLAP_CONTACT_SURFACE_SMOOTH_FACE_H
+#define TETLAP_CONTACT_SURFACE_SMOOTH_FACE_H
 
 #include "contact/surface/smooth_points.h"
 

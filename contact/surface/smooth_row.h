@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The vertices that carry a vertex or a point of a smooth surface, once the mean way off the chords has been
 // taken out (contact/surface/smooth.h).
-#ifndef TETLAP_CONTACT_SMOOTH_ROW_H
-#define TETLAP_CONTACT_SMOOTH_ROW_H
+#ifndef TETLAP_CONTACT_SURFACE_SMOOTH_ROW_H
+#define TETLAP_CONTACT_SURFACE_SMOOTH_ROW_H
 
 #include "contact/surface/smooth_points.h"
 

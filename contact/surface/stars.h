@@ -19,8 +19,8 @@
 //
 // The mesh so made is a definition of its own. Its positions follow from the nodes by the weights, and
 // forces and stiffness return to the nodes by the same weights, so balance there is balance for the nodes.
-#ifndef TETLAP_CONTACT_STARS_H
-#define TETLAP_CONTACT_STARS_H
+#ifndef TETLAP_CONTACT_SURFACE_STARS_H
+#define TETLAP_CONTACT_SURFACE_STARS_H
 
 #include "base/vec3.h"
 #include "contact/def.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The surface of a body at rest: the faces that only one of its tetrahedra has, and how far points are from
 // them. Distances are found in a tree of boxes over the triangles.
-#ifndef TETLAP_CONTACT_SURFACE_H
-#define TETLAP_CONTACT_SURFACE_H
+#ifndef TETLAP_CONTACT_SURFACE_SURFACE_H
+#define TETLAP_CONTACT_SURFACE_SURFACE_H
 
 #include <stddef.h>
 

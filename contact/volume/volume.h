@@ -15,8 +15,8 @@
 // (Cauchy and Schwarz), and equal where each ∇V_ij is in proportion to V_ij, as of flat faces that go into
 // each other. The part Σ p_ij ∇²V_ij of U's second derivative is left out: that changes how fast Newton's
 // method converges, not what it finds.
-#ifndef TETLAP_CONTACT_VOLUME_H
-#define TETLAP_CONTACT_VOLUME_H
+#ifndef TETLAP_CONTACT_VOLUME_VOLUME_H
+#define TETLAP_CONTACT_VOLUME_VOLUME_H
 
 #include "contact/pressure/field.h"
 #include "contact/pressure/patches.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pairs that come in other units, brought into the unit cube that data sets are made in.
-#ifndef TETLAP_DATAGEN_CUBE_H
-#define TETLAP_DATAGEN_CUBE_H
+#ifndef TETLAP_DATAGEN_DRAW_CUBE_H
+#define TETLAP_DATAGEN_DRAW_CUBE_H
 
 // The bounding box of `count` points (count, 3).
 void datagen_cube_box(const double *points, int count, double low[3], double high[3]);

@@ -7,8 +7,8 @@
 // overlap/exact/pair.h name them all and say which of the eight planes pass through each. The planes through
 // every vertex are those that hold all of P: if their normals have rank r, P has dimension 3 − r, and with c
 // of them of one tetrahedron, P lies in a face of it of dimension 3 − c and in none smaller.
-#ifndef TETLAP_DATAGEN_PROOF_H
-#define TETLAP_DATAGEN_PROOF_H
+#ifndef TETLAP_DATAGEN_DRAW_PROOF_H
+#define TETLAP_DATAGEN_DRAW_PROOF_H
 
 #include <stdbool.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pairs of a wanted kind, drawn until the exact proof confirms the kind.
-#ifndef TETLAP_DATAGEN_SAMPLER_H
-#define TETLAP_DATAGEN_SAMPLER_H
+#ifndef TETLAP_DATAGEN_DRAW_SAMPLER_H
+#define TETLAP_DATAGEN_DRAW_SAMPLER_H
 
 #include "base/random.h"
 #include "datagen/draw/proof.h"

@@ -9,8 +9,8 @@
 // cells are taken that lie over each other and a tetrahedron of each, with overlapping boxes: what a broad
 // phase would hand on. The pair is then turned at random and scaled and moved so that its bounding cube is
 // the unit cube: V is that of the scaled pair.
-#ifndef TETLAP_DATAGEN_SCENE_PAIRS_H
-#define TETLAP_DATAGEN_SCENE_PAIRS_H
+#ifndef TETLAP_DATAGEN_DRAW_SCENE_PAIRS_H
+#define TETLAP_DATAGEN_DRAW_SCENE_PAIRS_H
 
 #include <stdbool.h>
 

@@ -15,8 +15,8 @@
 // normal n, drawn again until the point is in the cube. For kinds 6 to 8, n is a random positive combination
 // of the outward unit normals of the faces that meet at the vertex or edge: any plane that touches the first
 // tetrahedron there and nowhere else may be the separating one.
-#ifndef TETLAP_DATAGEN_TOUCH_H
-#define TETLAP_DATAGEN_TOUCH_H
+#ifndef TETLAP_DATAGEN_DRAW_TOUCH_H
+#define TETLAP_DATAGEN_DRAW_TOUCH_H
 
 #include <stdbool.h>
 

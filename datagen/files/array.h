@@ -2,8 +2,8 @@
 // Coordinates of pairs in an HDF5 file of any origin: an array of floating point numbers, 24 for each pair,
 // in the root group. Which array: `coordinates`, else `pairs`, else the only one there is. Not safe to call
 // from two threads at once.
-#ifndef TETLAP_DATAGEN_ARRAY_H
-#define TETLAP_DATAGEN_ARRAY_H
+#ifndef TETLAP_DATAGEN_FILES_ARRAY_H
+#define TETLAP_DATAGEN_FILES_ARRAY_H
 
 #include <stddef.h>
 

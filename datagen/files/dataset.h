@@ -11,8 +11,8 @@
 // Chunks of 4096 pairs, each with a checksum (Fletcher 32): damage is found when a chunk is read. Files
 // appear whole or not at all: they grow beside their place and are renamed. Not safe to call from two threads
 // at once.
-#ifndef TETLAP_DATAGEN_DATASET_H
-#define TETLAP_DATAGEN_DATASET_H
+#ifndef TETLAP_DATAGEN_FILES_DATASET_H
+#define TETLAP_DATAGEN_FILES_DATASET_H
 
 #include <stdint.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How HDF5 fails: silently, with its reason in a Status, and without a crash when the program ends.
-#ifndef TETLAP_DATAGEN_HDF5_H
-#define TETLAP_DATAGEN_HDF5_H
+#ifndef TETLAP_DATAGEN_FILES_HDF5_H
+#define TETLAP_DATAGEN_FILES_HDF5_H
 
 #include "base/status.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Putting data set files together.
-#ifndef TETLAP_DATAGEN_MERGE_H
-#define TETLAP_DATAGEN_MERGE_H
+#ifndef TETLAP_DATAGEN_FILES_MERGE_H
+#define TETLAP_DATAGEN_FILES_MERGE_H
 
 #include <stdbool.h>
 

@@ -7,8 +7,8 @@
 //   carrier      0 a vertex    1 an edge     2 a face       3 the tetrahedron itself
 //
 // Two edges that lie along each other (dimension 1, carriers 1 and 1) have no kind: none is generated.
-#ifndef TETLAP_DATAGEN_KIND_H
-#define TETLAP_DATAGEN_KIND_H
+#ifndef TETLAP_DATAGEN_LAW_KIND_H
+#define TETLAP_DATAGEN_LAW_KIND_H
 
 #include "base/status.h"
 

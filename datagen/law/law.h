@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a data set is made of: a mix of kinds and a law for the volumes of the volumetric ones.
-#ifndef TETLAP_DATAGEN_LAW_H
-#define TETLAP_DATAGEN_LAW_H
+#ifndef TETLAP_DATAGEN_LAW_LAW_H
+#define TETLAP_DATAGEN_LAW_LAW_H
 
 #include <stddef.h>
 

@@ -3,8 +3,8 @@
 // is that of place π(i) when all pairs are laid out kind by kind, π a permutation of 0 … count − 1 made of
 // the seed; its coordinates come from a random stream of its own. So any range can be made by itself, by any
 // number of threads, and the counts of the kinds are exactly the mix.
-#ifndef TETLAP_DATAGEN_PLAN_H
-#define TETLAP_DATAGEN_PLAN_H
+#ifndef TETLAP_DATAGEN_LAW_PLAN_H
+#define TETLAP_DATAGEN_LAW_PLAN_H
 
 #include <stdbool.h>
 #include <stdint.h>

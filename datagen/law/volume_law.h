@@ -13,8 +13,8 @@
 //
 // The number that decides, u < a(V), is drawn first: V must then be at least floor(u), and most pairs that
 // are too small for a law that wants large volumes are dropped before V is computed.
-#ifndef TETLAP_DATAGEN_VOLUME_LAW_H
-#define TETLAP_DATAGEN_VOLUME_LAW_H
+#ifndef TETLAP_DATAGEN_LAW_VOLUME_LAW_H
+#define TETLAP_DATAGEN_LAW_VOLUME_LAW_H
 
 #include <stddef.h>
 

@@ -32,25 +32,24 @@
 #include "contact/system.h"
 #include "fem/effect/system.h"
 
-// Of one interface, at its largest P so far; the area, and what stands below `estimated`, at a P that is
-// smaller by a hundredth at most. `give` is taken at the state in which most energy is stored while the two
-// touch: an impact compresses the interface before the body behind it. Numbers only, for checkpoints.
+// Of one interface. An impact compresses the interface before the body behind it, so `give` is that of the
+// state in which most energy was stored while the two touched. Numbers only, for checkpoints.
 typedef struct FemAccuracyPair {
-  double force;      // the largest resultant [N]
-  double force_time; // [s]
-  double pressed;    // the largest P; 0: the two never touched [N]
-  double time;       // of that [s]
-  double resultant;  // then [N]
-  double area;       // [m²]
-  double centre[3];  // of pressure [m]
-  double held;       // the largest that two steps in a row have [N]
+  double force;      // the largest resultant so far [N]
+  double force_time; // when that was [s]
+  double pressed;    // the largest P so far; 0: the two never touched [N]
+  double time;       // when that was [s]
+  double resultant;  // at that time [N]
+  double area;       // about that time, as what follows from `estimated` on [m²]
+  double centre[3];  // of pressure, at that time [m]
+  double held;       // the largest P that two accepted steps in a row had [N]
   double last, seen; // P of the last accepted state [N], and its time [s]
-  double estimated;  // P then [N]
-  double energy;     // U [J]
-  double elastic[2]; // E_a, E_b [J]
-  double with;       // U of the same state [J]
-  double stored;     // U and the elastic energy of all bodies there [J]
-  double edge;       // [m]
+  double estimated;  // P of the state that the area and the numbers below are of: 0.99 `pressed` at least [N]
+  double energy;     // U there [J]
+  double elastic[2]; // E_a, E_b of the state in which most was stored [J]
+  double with;       // U of that state [J]
+  double stored;     // U and the elastic energy of all bodies in that state [J]
+  double edge;       // mean edge of the elements that take part [m]
   double rim;        // NaN: the potential is not `field`
 } FemAccuracyPair;
 enum { FEM_ACCURACY_KEPT = 20 };
@@ -58,14 +57,14 @@ enum { FEM_ACCURACY_KEPT = 20 };
 typedef struct FemAccuracy {
   int count;
   FemAccuracyPair *pairs; // by interfaces                                 (count)
-  FemAccuracyPair *found; // in the state that is evaluated               (found_count)
-  int *places;            // whose they are                               (found_count)
-  double *pressed;        // P of that state [N]                          (count)
-  double *forces;         // and the resultants [N]                       (count)
-  double time;            // of that state [s]
+  FemAccuracyPair *found; // what would replace some of them              (found_count)
+  int *places;            // the interfaces of those                      (found_count)
+  double *pressed;        // P of the state under trial [N]               (count)
+  double *forces;         // resultants of it [N]                         (count)
+  double time;            // of it [s]
   int found_count;
   double *energies;  // scratch: of bodies                                (body_count)
-  bool has_energies; // of the state that is looked at
+  bool has_energies; // whether they are of the state under trial
 } FemAccuracy;
 
 // A zeroed one, and one whose creation failed, can be destroyed. `contact` NULL: nothing to estimate.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is accumulated over accepted states: the balance of momentum (momentum.h),
-// elements that passed through bodies (contact/passage.h), the error of contact (accuracy.h), the readings of
-// probes (reading.h). A step that is taken back leaves no trace.
+// What is accumulated over accepted states: the balance of momentum (momentum.h), elements that passed
+// through bodies (contact/passage.h), the error of contact (accuracy.h), the readings of probes (reading.h).
+// A step that is taken back changes none of it.
 #ifndef TETLAP_FEM_MEASURE_LEDGER_H
 #define TETLAP_FEM_MEASURE_LEDGER_H
 
@@ -31,11 +31,11 @@ typedef struct FemLedgerEntry {
 Status fem_ledger_create(FemLedger *ledger, FemSystem *system);
 void fem_ledger_destroy(FemLedger *ledger);
 
-// As those of momentum.h: a run begins or goes on at a state, which has been evaluated …
+// A run begins, or goes on, at a state that has been evaluated.
 Status fem_ledger_begin(FemLedger *ledger, const FemState *state, const FemLedgerEntry *entry);
-// … a step may end there …
+// Measures a state at which a step would end; what has been accumulated stays as it is.
 Status fem_ledger_end(FemLedger *ledger, const FemState *state, const FemLedgerEntry *entry);
-// … and does.
+// The step has ended at the state that was measured last: it is accumulated.
 void fem_ledger_accept(FemLedger *ledger);
 
 // Into summary.json: `contacts`, a row for each two that touched, and `probes`.

@@ -14,7 +14,7 @@
 #include "contact/interface.h"
 #include "fem/effect/system.h"
 
-// What has been added up, and the last state that was.
+// What has been added up until the last state, and that state.
 typedef struct FemMomentumBody {
   double change[3];  // Δp [kg m/s]
   double impulse[3]; // J [N s]
@@ -48,9 +48,9 @@ typedef struct FemMomentumContact {
 
 // The next step begins at this state: with other free coordinates, or where forces have jumped.
 Status fem_momentum_begin(FemMomentum *momentum, const FemState *state, const FemMomentumContact *contact);
-// A step may end at this state …
+// Measures a state at which a step would end; what has been added up stays as it is.
 Status fem_momentum_end(FemMomentum *momentum, const FemState *state, const FemMomentumContact *contact);
-// … and does.
+// The step has ended at the state that was measured last: it is added up.
 void fem_momentum_accept(FemMomentum *momentum);
 // Whether the step that was evaluated last leaves a body with a larger gap than is allowed, by an estimate of
 // S at the end of the run, the time `end`.

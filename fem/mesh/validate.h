@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one gate through which every mesh passes: raw arrays in, a FemMesh that keeps its promises out, or a
+// Every mesh is checked here. Raw arrays become a FemMesh as fem/mesh/mesh.h describes it, or there is a
 // message that names the source, the element and what to do.
 #ifndef TETLAP_FEM_MESH_VALIDATE_H
 #define TETLAP_FEM_MESH_VALIDATE_H

@@ -41,7 +41,7 @@ void fem_frames_continue(FemFrames *frames, int count);
 // fem_frames_wait. A failure may be that of the frame before.
 Status fem_frames_write(FemFrames *frames, const FemVtuFrame *frame);
 
-// Until all frames are on the disk.
+// Waits until all frames are on the disk.
 Status fem_frames_wait(FemFrames *frames);
 
 // Waits, and writes the list if it lacks some: in between, long lists are written at most once a second.

@@ -55,9 +55,10 @@ Status fem_recorder_measure(FemRecorder *recorder, const FemState *state, FemMea
 
 // A run begins, or goes on, at the state that was measured last.
 Status fem_recorder_begin_step(FemRecorder *recorder, const FemState *state, const FemMeasures *measures);
-// A step may end at the state that was measured last; adds to the measures what only whole steps know.
+// A step would end at the state that was measured last; adds to the measures what is known of whole steps
+// only.
 Status fem_recorder_end_step(FemRecorder *recorder, const FemState *state, FemMeasures *measures);
-// It does: its end is the next one's beginning.
+// The step has ended there, and the next one begins there.
 void fem_recorder_accept_step(FemRecorder *recorder);
 
 // Into `state`: how many elements lie beyond the middle of another body at the last accepted state, as if
@@ -73,10 +74,10 @@ Status fem_recorder_write(FemRecorder *recorder, const FemColumnSource *source);
 Status fem_recorder_take_step(FemRecorder *recorder, const FemColumnSource *source);
 Status fem_recorder_append_step(FemRecorder *recorder);
 
-// Until what was written is on the disk.
+// Waits until what was written is on the disk.
 Status fem_recorder_wait(FemRecorder *recorder);
 
-// At the end: waits, and completes the list of frames.
+// Ends the record: waits, and completes the list of frames.
 Status fem_recorder_finish(FemRecorder *recorder);
 
 #endif

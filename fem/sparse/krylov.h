@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A linear system that is not symmetric, solved with the factor of one that is near it: GMRES (Saad and
 // Schultz 1986), preconditioned from the right, so that the residual is that of the system itself.
-#ifndef TETLAP_FEM_KRYLOV_H
-#define TETLAP_FEM_KRYLOV_H
+#ifndef TETLAP_FEM_SPARSE_KRYLOV_H
+#define TETLAP_FEM_SPARSE_KRYLOV_H
 
 #include "base/status.h"
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import "./style.css";
-import { buildBenches } from "./table/bench.js";
 import { HUES, listFields } from "./view/colour.js";
 import { buildComparison } from "./table/compare.js";
 import { buildContacts } from "./table/contacts.js";
@@ -162,7 +161,6 @@ function build(data, kept) {
     data.pareto && buildFrontier(data.pareto, state),
     data.stress && buildStress(data.stress),
     buildPhases(runs),
-    data.benches && buildBenches(data.benches),
     buildManifest(runs),
   );
   return { state, transport, stage, plots, data, live, place, times, fields, page, bar: buildBar(state, data.version), present, showFrame };

@@ -7,8 +7,8 @@
 //             second turned by 0.4 rad about the common normal, every vertex moved by up to 0.15 edges in
 //             each coordinate, pressed together by 0.1; a tetrahedron of each boundary layer, kept if they
 //             intersect
-#ifndef TETLAP_APP_BENCH_PAIRS_H
-#define TETLAP_APP_BENCH_PAIRS_H
+#ifndef TETLAP_APP_BENCH_OVERLAP_PAIRS_H
+#define TETLAP_APP_BENCH_OVERLAP_PAIRS_H
 
 #include <stdint.h>
 

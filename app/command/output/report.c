@@ -18,8 +18,6 @@ typedef struct Options {
   int directory_count;
   const char *output;
   const char *pareto;
-  const char *benches[APP_REPORT_MAX_BENCHES];
-  int bench_count;
   const char *stresses[APP_REPORT_MAX_STRESSES];
   int stress_count;
   int max_frames;
@@ -35,9 +33,6 @@ static const AppOption option_table[] = {
      CLI_FLAG, CLI_TO(Options, has_surface_only)},
     {"pareto", 0, "FILE", "Show this result of tools/measure/frontier as well", 0, CLI_TEXT,
      CLI_TO(Options, pareto)},
-    {"bench", 0, "FILE", "Show this result of `tetlap bench --json` as well; may be repeated", 0,
-     CLI_REPEATED, CLI_TO(Options, benches), .most = APP_REPORT_MAX_BENCHES, .example = "results of bench",
-     .count_offset = offsetof(Options, bench_count)},
     {"stress", 0, "FILE",
      "Show this table of `tetlap stress --json` as well; may be repeated: a later one replaces the same "
      "cases",
@@ -63,10 +58,6 @@ static Status collect(AppReport *report, const Options *options) {
     TRY(app_report_collect(report, options->directories[k], options->directory_count == 1,
                            options->max_frames));
   if (options->pareto) TRY(record_read(&report->pareto, options->pareto));
-  for (int k = 0; k < options->bench_count; k++) {
-    TRY(record_read(&report->benches[k], options->benches[k]));
-    report->bench_count++;
-  }
   for (int k = 0; k < options->stress_count; k++) TRY(add_stress(report, options->stresses[k]));
   return STATUS_OK;
 }
@@ -103,7 +94,6 @@ static bool is_of_run(const AppReportRun *run, const char *output) {
 
 static bool is_input(const Options *options, const char *output) {
   bool is_one = options->pareto && file_is_same(options->pareto, output);
-  for (int k = 0; k < options->bench_count; k++) is_one = is_one || file_is_same(options->benches[k], output);
   for (int k = 0; k < options->stress_count; k++)
     is_one = is_one || file_is_same(options->stresses[k], output);
   return is_one;
@@ -137,7 +127,7 @@ static Status write_page(AppReport *report, const Options *options) {
 
 static void check(struct argp_state *state, void *given) {
   const Options *options = given;
-  if (options->directory_count + options->bench_count + options->stress_count == 0 && !options->pareto)
+  if (options->directory_count + options->stress_count == 0 && !options->pareto)
     argp_error(state, "name the directory of a run, of two runs, of a comparison or of a verdict");
 }
 

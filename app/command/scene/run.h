@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `tetlap run SCENE`: runs a scene and writes its results.
-#ifndef TETLAP_APP_COMMAND_RUN_H
-#define TETLAP_APP_COMMAND_RUN_H
+#ifndef TETLAP_APP_COMMAND_SCENE_RUN_H
+#define TETLAP_APP_COMMAND_SCENE_RUN_H
 
 #include "app/cli/command.h"
 #include "app/job/job.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The accuracy of each overlap model on hard pairs, measured over 100 members a class: what `tetlap stress`
 // accepts beyond the standard of double precision.
-#ifndef TETLAP_APP_STRESS_TOLERANCES_H
-#define TETLAP_APP_STRESS_TOLERANCES_H
+#ifndef TETLAP_APP_STRESS_PAIRS_TOLERANCES_H
+#define TETLAP_APP_STRESS_PAIRS_TOLERANCES_H
 
 #include <stdbool.h>
 

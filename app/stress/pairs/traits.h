@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The property that makes a class of pairs hard, proven for every member, so that the case did occur.
-#ifndef TETLAP_APP_STRESS_TRAITS_H
-#define TETLAP_APP_STRESS_TRAITS_H
+#ifndef TETLAP_APP_STRESS_PAIRS_TRAITS_H
+#define TETLAP_APP_STRESS_PAIRS_TRAITS_H
 
 #include <stdbool.h>
 

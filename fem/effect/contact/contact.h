@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The contact effect's inside, for output, comparison and audit.
-#ifndef TETLAP_FEM_EFFECT_CONTACT_H
-#define TETLAP_FEM_EFFECT_CONTACT_H
+#ifndef TETLAP_FEM_EFFECT_CONTACT_CONTACT_H
+#define TETLAP_FEM_EFFECT_CONTACT_CONTACT_H
 
 #include "contact/system.h"
 #include "fem/effect/system.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The inside of friction by elastic stick, for output and derivatives.
-#ifndef TETLAP_FEM_EFFECT_STICK_H
-#define TETLAP_FEM_EFFECT_STICK_H
+#ifndef TETLAP_FEM_EFFECT_CONTACT_STICK_H
+#define TETLAP_FEM_EFFECT_CONTACT_STICK_H
 
 #include "contact/friction/stick_pull.h"
 #include "contact/friction/stick_told.h"

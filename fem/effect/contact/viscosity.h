@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Viscous contact's forces, for output.
-#ifndef TETLAP_FEM_EFFECT_VISCOSITY_H
-#define TETLAP_FEM_EFFECT_VISCOSITY_H
+#ifndef TETLAP_FEM_EFFECT_CONTACT_VISCOSITY_H
+#define TETLAP_FEM_EFFECT_CONTACT_VISCOSITY_H
 
 #include "fem/effect/state.h"
 

@@ -3,8 +3,8 @@
 // this file gathers vertices, adds by colours, and finds the entries of the matrix. Forces and matrices go
 // through vector lanes, eight elements at a time (fem/effect/elements/packs.h). Every sum has a fixed order:
 // results are the same to the last bit for any number of threads.
-#ifndef TETLAP_FEM_EFFECT_ASSEMBLY_H
-#define TETLAP_FEM_EFFECT_ASSEMBLY_H
+#ifndef TETLAP_FEM_EFFECT_ELEMENTS_ASSEMBLY_H
+#define TETLAP_FEM_EFFECT_ELEMENTS_ASSEMBLY_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -3,8 +3,8 @@
 // that what is near in space is near in memory: along a Morton curve, in chunks of some packs of one part of
 // a body. Chunks are coloured: those of a colour share no vertex and may be added at the same time. Within a
 // chunk elements are added one after another, so every sum has a fixed order.
-#ifndef TETLAP_FEM_EFFECT_PACKS_H
-#define TETLAP_FEM_EFFECT_PACKS_H
+#ifndef TETLAP_FEM_EFFECT_ELEMENTS_PACKS_H
+#define TETLAP_FEM_EFFECT_ELEMENTS_PACKS_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The inside of the effect `plasticity`, for output.
-#ifndef TETLAP_FEM_EFFECT_PLASTICITY_H
-#define TETLAP_FEM_EFFECT_PLASTICITY_H
+#ifndef TETLAP_FEM_EFFECT_ELEMENTS_PLASTICITY_H
+#define TETLAP_FEM_EFFECT_ELEMENTS_PLASTICITY_H
 
 #include "fem/effect/state.h"
 

@@ -11,8 +11,8 @@
 // so contact, loads and constraints are as for linear tetrahedra. The cost: a vertex couples with its
 // neighbours' neighbours. Where materials meet, θ may jump: a vertex there is one for each, with the elements
 // of that material around it.
-#ifndef TETLAP_FEM_EFFECT_VOLUME_H
-#define TETLAP_FEM_EFFECT_VOLUME_H
+#ifndef TETLAP_FEM_EFFECT_ELEMENTS_VOLUME_H
+#define TETLAP_FEM_EFFECT_ELEMENTS_VOLUME_H
 
 #include "fem/model/model.h"
 #include "fem/sparse/matrix.h"

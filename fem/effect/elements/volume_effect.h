@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The inside of the effect `volume`, for output.
-#ifndef TETLAP_FEM_EFFECT_VOLUME_EFFECT_H
-#define TETLAP_FEM_EFFECT_VOLUME_EFFECT_H
+#ifndef TETLAP_FEM_EFFECT_ELEMENTS_VOLUME_EFFECT_H
+#define TETLAP_FEM_EFFECT_ELEMENTS_VOLUME_EFFECT_H
 
 // Adds the vertices' mean pressure in a tetrahedron of a nodal body, at the state last evaluated, to its
 // Cauchy stress [Pa] (xx, yy, zz, xy, yz, xz).

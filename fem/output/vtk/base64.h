@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bytes as text in the base64 alphabet of RFC 4648: written to a stream piece by piece, and read back.
-#ifndef TETLAP_FEM_OUTPUT_BASE64_H
-#define TETLAP_FEM_OUTPUT_BASE64_H
+#ifndef TETLAP_FEM_OUTPUT_VTK_BASE64_H
+#define TETLAP_FEM_OUTPUT_VTK_BASE64_H
 
 #include <stddef.h>
 #include <stdio.h>

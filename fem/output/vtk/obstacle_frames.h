@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a run writes of obstacles without a mesh beside its frames: obstacles.vtu once, of those that stand,
 // and obstacles_NNNNN.vtu with every frame, of those that move.
-#ifndef TETLAP_FEM_OUTPUT_OBSTACLE_FRAMES_H
-#define TETLAP_FEM_OUTPUT_OBSTACLE_FRAMES_H
+#ifndef TETLAP_FEM_OUTPUT_VTK_OBSTACLE_FRAMES_H
+#define TETLAP_FEM_OUTPUT_VTK_OBSTACLE_FRAMES_H
 
 #include "base/files/file.h"
 #include "fem/output/vtk/obstacle_surface.h"

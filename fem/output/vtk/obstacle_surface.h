@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Surfaces of obstacles without a mesh, to be looked at: triangles that follow the obstacle's motion. Contact
 // knows nothing of them (contact/shape/shape.h).
-#ifndef TETLAP_FEM_OUTPUT_OBSTACLE_SURFACE_H
-#define TETLAP_FEM_OUTPUT_OBSTACLE_SURFACE_H
+#ifndef TETLAP_FEM_OUTPUT_VTK_OBSTACLE_SURFACE_H
+#define TETLAP_FEM_OUTPUT_VTK_OBSTACLE_SURFACE_H
 
 #include <stdbool.h>
 

@@ -2,8 +2,8 @@
 // A frame in pieces, one of each rank with its own elements, and a list of them (.pvtu) that ParaView opens
 // as one. Each piece has the numbers of its vertices and elements in the whole, by which the whole is put
 // together again.
-#ifndef TETLAP_FEM_OUTPUT_PIECES_H
-#define TETLAP_FEM_OUTPUT_PIECES_H
+#ifndef TETLAP_FEM_OUTPUT_VTK_PIECES_H
+#define TETLAP_FEM_OUTPUT_VTK_PIECES_H
 
 #include "base/status.h"
 #include "fem/output/vtk/vtu.h"

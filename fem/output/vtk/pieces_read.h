@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Frames read back, in one file (.vtu) or in pieces (.pvtu, fem/output/vtk/pieces.h).
-#ifndef TETLAP_FEM_OUTPUT_PIECES_READ_H
-#define TETLAP_FEM_OUTPUT_PIECES_READ_H
+#ifndef TETLAP_FEM_OUTPUT_VTK_PIECES_READ_H
+#define TETLAP_FEM_OUTPUT_VTK_PIECES_READ_H
 
 #include "fem/output/vtk/vtu_read.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The list of a run's frames (.pvd) that ParaView opens as one animation.
-#ifndef TETLAP_FEM_OUTPUT_PVD_H
-#define TETLAP_FEM_OUTPUT_PVD_H
+#ifndef TETLAP_FEM_OUTPUT_VTK_PVD_H
+#define TETLAP_FEM_OUTPUT_VTK_PVD_H
 
 #include "base/files/file.h"
 #include "base/status.h"

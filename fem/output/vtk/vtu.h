@@ -5,8 +5,8 @@
 // Not as appended data, which would be a quarter smaller: the ParaView 5.11 of Debian 12 cannot read those
 // together with Debian's expat, whose security update (CVE-2023-52425) reports tokens later than its VTK
 // expects. Text in the elements is plain XML that every reader takes.
-#ifndef TETLAP_FEM_OUTPUT_VTU_H
-#define TETLAP_FEM_OUTPUT_VTU_H
+#ifndef TETLAP_FEM_OUTPUT_VTK_VTU_H
+#define TETLAP_FEM_OUTPUT_VTK_VTU_H
 
 #include <stdbool.h>
 #include <stddef.h>

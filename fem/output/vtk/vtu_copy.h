@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A frame with arrays of its own, to be written while the run goes on. Its memory is used again by the next.
-#ifndef TETLAP_FEM_OUTPUT_VTU_COPY_H
-#define TETLAP_FEM_OUTPUT_VTU_COPY_H
+#ifndef TETLAP_FEM_OUTPUT_VTK_VTU_COPY_H
+#define TETLAP_FEM_OUTPUT_VTK_VTU_COPY_H
 
 #include <stddef.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Frames read back: the form that fem/output/vtk/vtu.h writes (zlib blocks as base64 text in their elements),
 // no other of VTK's.
-#ifndef TETLAP_FEM_OUTPUT_VTU_READ_H
-#define TETLAP_FEM_OUTPUT_VTU_READ_H
+#ifndef TETLAP_FEM_OUTPUT_VTK_VTU_READ_H
+#define TETLAP_FEM_OUTPUT_VTK_VTU_READ_H
 
 #include <stdbool.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Text inside XML: shared by the writers of .vtu and .pvd.
-#ifndef TETLAP_FEM_OUTPUT_XML_H
-#define TETLAP_FEM_OUTPUT_XML_H
+#ifndef TETLAP_FEM_OUTPUT_VTK_XML_H
+#define TETLAP_FEM_OUTPUT_VTK_XML_H
 
 #include <stdio.h>
 

@@ -8,8 +8,8 @@
 // The file is HDF5 (h5dump and h5py read it) behind a block of 512 bytes of text that holds the format, the
 // size and the digest of the rest, so that damage is found before HDF5 sees it. Every number has an attribute
 // `unit`, the root the attribute `format`.
-#ifndef TETLAP_FEM_RUN_CHECKPOINT_H
-#define TETLAP_FEM_RUN_CHECKPOINT_H
+#ifndef TETLAP_FEM_RUN_CHECKPOINT_CHECKPOINT_H
+#define TETLAP_FEM_RUN_CHECKPOINT_CHECKPOINT_H
 
 #include <stddef.h>
 

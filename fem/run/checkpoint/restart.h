@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Between a run and its checkpoints: what is taken from the one for the other.
-#ifndef TETLAP_FEM_RUN_RESTART_H
-#define TETLAP_FEM_RUN_RESTART_H
+#ifndef TETLAP_FEM_RUN_CHECKPOINT_RESTART_H
+#define TETLAP_FEM_RUN_CHECKPOINT_RESTART_H
 
 #include "fem/effect/system.h"
 #include "fem/run/checkpoint/checkpoint.h"

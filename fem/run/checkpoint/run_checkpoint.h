@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The checkpoints of a run that goes on: when one is due, what it holds, and whether its file is written.
-#ifndef TETLAP_FEM_RUN_RUN_CHECKPOINT_H
-#define TETLAP_FEM_RUN_RUN_CHECKPOINT_H
+#ifndef TETLAP_FEM_RUN_CHECKPOINT_RUN_CHECKPOINT_H
+#define TETLAP_FEM_RUN_CHECKPOINT_RUN_CHECKPOINT_H
 
 #include "fem/run/run_state.h"
 
