@@ -12,6 +12,7 @@
 #include "fem/model/parts.h"
 #include "fem/model/work.h"
 #include "fem/scene/meshes.h"
+#include "fem/scene/obstacle.h"
 #include "fem/scene/select.h"
 
 static size_t count_materials(const FemSceneDef *scene) {
@@ -242,6 +243,17 @@ static Status measure(FemModel *model, const FemMesh *meshes) {
   return STATUS_OK;
 }
 
+static Status check_obstacles(const FemModel *model) {
+  const FemSceneDef *scene = model->scene;
+  for (int o = 0; o < scene->obstacle_count; o++) {
+    const FemObstacleDef *def = &scene->obstacles[o];
+    Status status = fem_obstacle_check(def, model->edge);
+    if (status)
+      return status_prefix(status, "%s: obstacle '%s'", fem_scene_where(scene, &def->place).text, def->name);
+  }
+  return STATUS_OK;
+}
+
 static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
   TRY(allocate(model, meshes, mesh_count));
   TRY(append_bodies(model, meshes));
@@ -253,7 +265,8 @@ static Status build(FemModel *model, const FemMesh *meshes, int mesh_count) {
   TRY(add_lines(model, meshes));
   TRY(fem_model_divide(model));
   if (!model->share) TRY(fem_model_work_count(model));
-  return measure(model, meshes);
+  TRY(measure(model, meshes));
+  return check_obstacles(model);
 }
 
 Status fem_model_create(FemModel *model, const FemSceneDef *scene) {

@@ -11,4 +11,8 @@
 // box.
 void fem_obstacle_shape(const FemObstacleDef *def, ContactShape *shape, ContactConvex *solid);
 
+// Whether rounding leaves it a surface for elements whose edges have that mean length [m]. STATUS_INPUT: it
+// is too large.
+Status fem_obstacle_check(const FemObstacleDef *def, double edge);
+
 #endif

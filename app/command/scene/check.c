@@ -27,6 +27,10 @@
 enum { MAX_NOTES = 24, MAX_OVERLAPS = 6, MAX_THIN = 6 };
 // Elements through the thickness from which on linear ones bend as they should, roughly.
 static const double ENOUGH_LAYERS = 3.5;
+// A pressure over E from which on a body is told to be crushed: at half of it, it has half its height.
+static const double CRUSHED = 0.5;
+// Of the sizes of two bodies: from which on one of them may be in mm, the other in m.
+static const double FAR_LARGER = 300;
 
 typedef struct Options {
   AppJobOptions job;
@@ -39,6 +43,7 @@ typedef struct Notes {
   int count;
   char overlaps[MAX_OVERLAPS][512];
   char thin[MAX_THIN][512];
+  char crushed[512], far_larger[512];
 } Notes;
 
 static void note(Notes *notes, bool is_true, const char *text) {
@@ -114,6 +119,69 @@ static Status note_thin(const AppJob *job, Notes *notes) {
     note(notes, true, notes->thin[k++]);
   }
   return STATUS_OK;
+}
+
+// The least E of a body's materials [Pa].
+static double softest(const FemModel *model, int body) {
+  double least = INFINITY;
+  for (int p = model->bodies[body].part_begin; p < model->bodies[body].part_end; p++)
+    least = fmin(least, model->parts[p].material.young);
+  return least;
+}
+
+// Of the two that press each other hardest beside what they are made of.
+static Status note_crushed(const AppJob *job, Notes *notes) {
+  const FemModel *model = &job->model;
+  FemCompliance choice;
+  double worst = CRUSHED;
+  if (!job->scene.contact.is_on) return STATUS_OK;
+  TRY(fem_compliance_choose(model, &choice));
+  for (int a = 0; a < job->scene.body_count; a++)
+    for (int b = 0; b < choice.party_count; b++) {
+      double pressure = choice.pressures[a * choice.party_count + b], young = softest(model, a);
+      if (!fem_compliance_meets(model, a, b) || !(pressure > worst * young)) continue;
+      worst = pressure / young;
+      snprintf(
+          notes->crushed, sizeof notes->crushed,
+          "'%s' and '%s' may press each other with up to %.2g Pa, %.2g of the Young's modulus of '%s', by "
+          "loads and the hardest impact: it is crushed then, and what it does depends on its mesh; is that "
+          "meant, and are all units SI?",
+          model->bodies[a].name, fem_compliance_party_name(model, b), pressure, worst, model->bodies[a].name);
+    }
+  note(notes, worst > CRUSHED, notes->crushed);
+  fem_compliance_destroy(&choice);
+  return STATUS_OK;
+}
+
+// The box around a body as placed, at rest [m].
+static void measure_body(const FemModel *model, const FemModelBody *body, double low[3], double high[3]) {
+  for (int c = 0; c < 3; c++) {
+    low[c] = INFINITY, high[c] = -INFINITY;
+    for (int v = body->vertex_begin; v < body->vertex_end; v++) {
+      low[c] = fmin(low[c], model->rest[3 * (size_t)v + (size_t)c]);
+      high[c] = fmax(high[c], model->rest[3 * (size_t)v + (size_t)c]);
+    }
+  }
+}
+
+static double largest_side(const FemModel *model, const FemModelBody *body) {
+  double low[3], high[3];
+  measure_body(model, body, low, high);
+  return fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2]));
+}
+
+// A mesh in mm among others in m.
+static void note_units(const FemModel *model, Notes *notes) {
+  int least = 0, most = 0;
+  for (int b = 0; b < model->body_count; b++) {
+    if (largest_side(model, &model->bodies[b]) < largest_side(model, &model->bodies[least])) least = b;
+    if (largest_side(model, &model->bodies[b]) > largest_side(model, &model->bodies[most])) most = b;
+  }
+  double ratio = largest_side(model, &model->bodies[most]) / largest_side(model, &model->bodies[least]);
+  snprintf(notes->far_larger, sizeof notes->far_larger,
+           "'%s' is %.0f times as large as '%s'; if the mesh of one is in mm, it needs place: {scale: 0.001}",
+           model->bodies[most].name, ratio, model->bodies[least].name);
+  note(notes, ratio > FAR_LARGER, notes->far_larger);
 }
 
 static Notes take_notes(const AppJob *job) {
@@ -200,11 +268,15 @@ static void print_body(const AppJob *job, int b) {
   const FemBodyDef *def = &job->scene.bodies[b];
   Prescribed prescribed = count_prescribed(&job->model, body);
   char mesh[512];
+  double low[3], high[3];
   describe_mesh(def->mesh_path, def->box_cells, mesh, sizeof mesh);
   int quadratic_count = body->quadratic_end - body->quadratic_begin;
   printf("  %-12s %s: %d vertices, ", body->name, mesh, body->vertex_end - body->vertex_begin);
   if (quadratic_count > 0) printf("%d quadratic tetrahedra, for contact in ", quadratic_count);
   printf("%d tetrahedra\n", body->tet_end - body->tet_begin);
+  measure_body(&job->model, body, low, high);
+  printf("  %-12s %.4g × %.4g × %.4g m, from (%.4g, %.4g, %.4g)\n", "", high[0] - low[0], high[1] - low[1],
+         high[2] - low[2], low[0], low[1], low[2]);
   for (int p = body->part_begin; p < body->part_end; p++) print_part(&job->model, p, def);
   if (prescribed.fixed + prescribed.driven > 0)
     printf("  %-12s %d coordinates fixed, %d driven\n", "", prescribed.fixed, prescribed.driven);
@@ -328,9 +400,13 @@ static void record_body(const AppJob *job, int b, Record *record) {
   const FemBodyDef *def = &job->scene.bodies[b];
   Prescribed prescribed = count_prescribed(&job->model, body);
   char mesh[512];
+  double low[3], high[3];
   describe_mesh(def->mesh_path, def->box_cells, mesh, sizeof mesh);
   record_text(record, "name", body->name);
   record_text(record, "mesh", mesh);
+  measure_body(&job->model, body, low, high);
+  record_numbers(record, "box_min", low, 3);
+  record_numbers(record, "box_max", high, 3);
   record_integer(record, "vertices", body->vertex_end - body->vertex_begin);
   record_integer(record, "tetrahedra", body->tet_end - body->tet_begin);
   if (body->quadratic_end > body->quadratic_begin)
@@ -439,6 +515,8 @@ static Status check(const Options *options) {
       options->rank_count > 0 ? fem_model_division_plan(&job.model, options->rank_count, &plan) : STATUS_OK;
   if (!status) status = job.scene.contact.is_on ? note_overlaps(&job, &notes) : STATUS_OK;
   if (!status) status = note_thin(&job, &notes);
+  if (!status) status = note_crushed(&job, &notes);
+  note_units(&job.model, &notes);
   if (status) {
     app_job_close(&job);
     return status;

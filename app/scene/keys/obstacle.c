@@ -41,7 +41,7 @@ static const SceneKey box_keys[] = {
     {"centre", SCENE_VECTOR, AT(FemObstacleDef, point), .unit = "m", .required = "[0, 0, 0]",
      .help = "at t = 0"},
     {"size", SCENE_VECTOR, AT(FemObstacleDef, size), .unit = "m", .range = "(0, inf)",
-     .required = "[1, 1, 0.1]", .help = "edges"},
+     .required = "[1, 1, 0.1]", .help = "edges; a half-space has no end"},
     {"rotate", SCENE_SECTION, .offset = offsetof(FemObstacleDef, turn), .absent_help = "along x, y, z",
      .section = &box_turn, .help = "how it stands at t = 0"},
     {0},

@@ -260,6 +260,31 @@ static void choose_for_field(const FemModel *model, const Give *gives, const Cou
     }
 }
 
+// ---- What they may be pressed by.
+
+static double section_of(const Give *give) {
+  return give->extent.height > 0 ? give->volume / give->extent.height : INFINITY;
+}
+
+static double pressure_between(const FemModel *model, const Give *gives, const Course *course, int a, int b) {
+  const Give *one = &gives[a], *other = &gives[b];
+  double give = one->give + other->give, curvature = one->roundness.round + other->roundness.round;
+  double force = fmax(fem_patch_load(model, a), fem_patch_load(model, b));
+  double stored = one->volume * one->inverse + other->volume * other->inverse;
+  if (a == b || !(give > 0)) return 0;
+  double flat = fmax(force / fmin(section_of(one), section_of(other)), sqrt(2 * course->blow / stored));
+  if (!(curvature > 0) || lies_in_hollow(one, other)) return flat;
+  double radius = fem_patch_radius(curvature, 1 / give, 0, force, course->blow);
+  return fmax(flat, 2 / M_PI * curvature * radius / give);
+}
+
+static void estimate_pressures(const FemModel *model, const Give *gives, const Course *course,
+                               FemCompliance *choice) {
+  for (int a = 0; a < model->body_count; a++)
+    for (int b = 0; b < choice->party_count; b++)
+      choice->pressures[a * choice->party_count + b] = pressure_between(model, gives, course, a, b);
+}
+
 // ---- How often edges are halved.
 
 // The least level at which the depth is as large as SAGITTAS of the facets of both, h²/(8 R · 4^level).
@@ -393,6 +418,7 @@ static Status choose(const FemModel *model, Give *gives, FemCompliance *choice) 
   }
   if (is_field && !(contact->stiffness > 0)) choose_for_field(model, gives, &course, choice);
   TRY(apply_pairs(model, choice));
+  if (is_field) estimate_pressures(model, gives, &course, choice);
   if (is_field) choose_levels(model, gives, &course, choice);
   return STATUS_OK;
 }
@@ -404,9 +430,11 @@ Status fem_compliance_choose(const FemModel *model, FemCompliance *choice) {
   Give *gives = memory_zeroed((size_t)parties, sizeof *gives);
   choice->stiffness = memory_zeroed(count, sizeof *choice->stiffness);
   choice->bounds = memory_zeroed(count, sizeof *choice->bounds);
+  choice->pressures = memory_zeroed(count, sizeof *choice->pressures);
   choice->levels = memory_zeroed((size_t)model->body_count, sizeof *choice->levels);
   choice->is_faceted = memory_zeroed((size_t)model->body_count, sizeof *choice->is_faceted);
-  bool fits = gives && choice->stiffness && choice->bounds && choice->levels && choice->is_faceted;
+  bool fits = gives && choice->stiffness && choice->bounds && choice->pressures && choice->levels &&
+              choice->is_faceted;
   Status status = fits ? choose(model, gives, choice) : status_no_memory("contact stiffness");
   memory_free(gives);
   if (status) fem_compliance_destroy(choice);
@@ -417,6 +445,7 @@ void fem_compliance_destroy(FemCompliance *choice) {
   memory_free(choice->stiffness);
   memory_free(choice->bounds);
   memory_free(choice->levels);
+  memory_free(choice->pressures);
   memory_free(choice->is_faceted);
   *choice = (FemCompliance){0};
 }

@@ -38,6 +38,9 @@
 // A patch of the radius a yields by π/2 a (1/E_A' + 1/E_B') for each Pa in its middle. Where that is less
 // than what whole bodies yield, the 2 % are those of the patch.
 //
+// What loads and the hardest impact may press two with: Hertz's 2 κ a/(π Σ 1/E') in the middle of a patch;
+// between flat ones F over V/L of the smaller one, and p as above. Motions are not counted.
+//
 // contact.smooth is the least level at which the overlap in the middle of the patch is as deep as 2.5
 // sagittas of what is left, h²/(8 R · 4^level); 2 in a hollow, where pressures are low beside E h/R; 1 where
 // a is not known. Quadratic elements have their own curved edges.
@@ -59,6 +62,7 @@ typedef struct FemCompliance {
   int party_count;            // bodies (obstacles with a mesh among them), then obstacles without elements
   double *stiffness;          // κ of body a with party b                    (body_count, party_count)
   FemComplianceBound *bounds; // what it was chosen by                       (body_count, party_count)
+  double *pressures;          // by which they may press each other, roughly; 0: untold [Pa]     likewise
   int *levels;                // of contact.smooth                           (body_count)
   bool
       *is_faceted; // a level above 0 is due, but its elements are quadratic, with straight edges (body_count)

@@ -174,6 +174,13 @@ static void insert_corner(Ring *ring, int corner, double angle) {
   ring->corners[at] = corner, ring->angles[at] = angle;
 }
 
+// A corner's coordinates are right to rounding, each for itself: of a thin plate they differ by any factor.
+static bool is_on_plane(Vec3 corner, Vec3 normal, double offset) {
+  const double parts[3] = {corner.x * normal.x, corner.y * normal.y, corner.z * normal.z};
+  return fabs(parts[0] + parts[1] + parts[2] - offset) <=
+         1e-9 * (fabs(parts[0]) + fabs(parts[1]) + fabs(parts[2]));
+}
+
 // The corners of a face. The solid is symmetric, so that a face's centre is the foot of its normal.
 static void find_ring(Ring *ring, const ContactConvex *solid, int plane) {
   Vec3 normal = solid->normals[plane], u = {0, 0, 0}, v = {0, 0, 0};
@@ -181,7 +188,7 @@ static void find_ring(Ring *ring, const ContactConvex *solid, int plane) {
   ring->centre = vec3_scale(solid->offsets[plane], normal);
   for (int k = 0; k < 2 * solid->corner_count; k++) {
     Vec3 corner = corner_of(solid, k), arm = vec3_sub(corner, ring->centre);
-    if (fabs(vec3_dot(arm, normal)) > 1e-9 * solid->reach) continue;
+    if (!is_on_plane(corner, normal, solid->offsets[plane])) continue;
     if (ring->count == 0) u = arm, v = vec3_cross(normal, u);
     insert_corner(ring, k, atan2(vec3_dot(arm, v), vec3_dot(arm, u)));
   }

@@ -217,6 +217,70 @@ START_TEST(a_halfspace_is_a_square_below_the_bodies_that_moves_along_its_normal)
 }
 END_TEST
 
+// Thinner than rounding of its length: each face has its own four corners, not those of the face opposite.
+START_TEST(a_thin_plate_and_a_long_rod_have_closed_surfaces) {
+  static const struct {
+    const char *obstacle;
+    double volume;
+    int triangles;
+  } cases[] = {{"{name: plate, box: {centre: [0, 0, -1e-5], size: [1e7, 1e7, 1e-5]}}", 1e9, 24},
+               {"{name: rod, cylinder: {centre: [0, 0, -1e-5], axis: [1, 0, 0], radius: 1e-5, length: 1e7}}",
+                M_PI * 1e-3, 0}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    SceneRun run;
+    FemObstacleSurface surface;
+    char override[256];
+    snprintf(override, sizeof override, "obstacles=[%s]", cases[k].obstacle);
+    scene_open(&run, "drop", (const char *const[]){override, NULL});
+    ck_assert_ok(fem_obstacle_surface_create(&surface, &run.model, false));
+    if (cases[k].triangles) ck_assert_int_eq(surface.triangle_count, cases[k].triangles);
+    ck_assert_near(volume_of(&surface, &run.scene.obstacles[0]) / cases[k].volume, 1, 1e-3);
+    fem_obstacle_surface_destroy(&surface);
+    scene_close(&run);
+  }
+}
+END_TEST
+
+START_TEST(what_rounding_leaves_no_surface_is_refused) {
+  static const char *const shapes[] = {
+      "box: {centre: [0, 0, -5e11], size: [1, 1, 1e12]}", "sphere: {centre: [0, 0, -1e3], radius: 1e3}",
+      "cylinder: {centre: [0, 0, -1e6], axis: [1, 0, 0], radius: 1e6, length: 1}",
+      "cylinder: {centre: [0, 0, -1], axis: [1, 0, 0], radius: 1, length: 1e12}"};
+  for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++) {
+    FemSceneDef scene;
+    FemModel model;
+    char override[256];
+    const char *const overrides[] = {override};
+    snprintf(override, sizeof override, "obstacles=[{name: wide, %s}]", shapes[k]);
+    ck_assert_ok(app_scene_read(TETLAP_SOURCE_DIR "/tests/scenes/drop.yaml", overrides, 1, &scene));
+    ck_assert_int_eq(fem_model_create(&model, &scene), STATUS_INPUT);
+    ck_assert_msg(strstr(status_message(), "obstacle 'wide': is ") && strstr(status_message(), "a halfspace"),
+                  "%s", status_message());
+    fem_scene_destroy(&scene);
+  }
+}
+END_TEST
+
+// A block that falls on the largest ones lies on them as on a half-space.
+START_TEST(the_largest_that_are_allowed_bear_a_block_like_a_halfspace) {
+  static const char *const shapes[] = {
+      "halfspace: {point: [0, 0, 0], normal: [0, 0, 1]}", "box: {centre: [0, 0, -1], size: [1e7, 1e7, 2]}",
+      "sphere: {centre: [0, 0, -30], radius: 30}",
+      "cylinder: {centre: [0, 0, -1e3], axis: [1, 0, 0], radius: 1e3, length: 1e7}"};
+  double force[4];
+  for (int k = 0; k < 4; k++) {
+    SceneRun run;
+    char override[256];
+    snprintf(override, sizeof override, "obstacles=[{name: ground, %s}]", shapes[k]);
+    scene_run(&run, "drop", (const char *const[]){override, "time.end=0.15", NULL});
+    force[k] = run.result.contact.force_max;
+    scene_close(&run);
+  }
+  for (int k = 1; k < 4; k++)
+    ck_assert_near(force[k] / force[0], 1, k == 2 ? 0.05 : 0.01); // the ball is round
+}
+END_TEST
+
 START_TEST(obstacles_are_numbered_as_the_sides_of_interfaces) {
   Fixture *f = open_scene();
   // The cube and the brick have meshes; the others follow in the scene's order.
@@ -380,6 +444,9 @@ int main(void) {
   tcase_add_test(cases, what_moves_is_where_its_motion_takes_it);
   tcase_add_test(cases, contact_meets_the_drawn_surface_and_nothing_outside_it);
   tcase_add_test(cases, a_halfspace_is_a_square_below_the_bodies_that_moves_along_its_normal);
+  tcase_add_test(cases, a_thin_plate_and_a_long_rod_have_closed_surfaces);
+  tcase_add_test(cases, what_rounding_leaves_no_surface_is_refused);
+  tcase_add_test(cases, the_largest_that_are_allowed_bear_a_block_like_a_halfspace);
   tcase_add_test(cases, obstacles_are_numbered_as_the_sides_of_interfaces);
   tcase_add_test(cases, faces_part_a_surface_evenly);
   tcase_add_test(cases, a_scene_of_meshes_has_none);

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `tetlap check` says of sizes and pressures.
+#include "suite.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// What it says of a scene of tests/scenes; the caller's (free).
+static char *check_scene(const char *name, const char *sets) {
+  char command[1024], *text = NULL;
+  size_t size = 0;
+  snprintf(command, sizeof command, "%s check %s/tests/scenes/%s.yaml %s 2>&1", TETLAP_PROGRAM,
+           TETLAP_SOURCE_DIR, name, sets);
+  FILE *pipe = popen(command, "r"), *all = open_memstream(&text, &size);
+  for (int c; (c = fgetc(pipe)) != EOF;) fputc(c, all);
+  fclose(all);
+  ck_assert_int_eq(pclose(pipe), 0);
+  return text;
+}
+
+static void ck_says(const char *name, const char *sets, const char *words, bool says) {
+  char *text = check_scene(name, sets);
+  ck_assert_msg((strstr(text, words) != NULL) == says, "%s %s: %s: %s", name, sets,
+                says ? "does not say" : "says", words);
+  free(text);
+}
+
+START_TEST(every_body_has_its_box) {
+  ck_says("patch", "", "0.1 × 0.1 × 0.05 m, from (0, 0, 0.05)\n", true);
+  ck_says("patch", "--json", "\"box_max\": [", true);
+}
+END_TEST
+
+// 1 MPa is E of the blocks; 1 kPa strains them by 0.1 %.
+START_TEST(a_pressure_near_E_is_told_with_who_is_crushed) {
+  const char *const words = "'lower' and 'upper' may press each other with up to 1e+06 Pa, 1 of the Young's";
+  ck_says("patch", "", "crushed", false);
+  ck_says("patch", "--set 'bodies.upper.loads[0].traction=[0, 0, -4e5]'", "crushed", false);
+  ck_says("patch", "--set 'bodies.upper.loads[0].traction=[0, 0, -1e6]'", words, true);
+}
+END_TEST
+
+// m g H = E V/2 of a block that falls from H: p = E where it stores that evenly.
+START_TEST(a_blow_that_a_body_cannot_store_is_told) {
+  const char *const fast = "--set 'bodies.block.velocity=[0, 0, -31.6]' --set effects.gravity=null";
+  ck_says("drop", "", "crushed", false);
+  ck_says("drop", fast, "with up to 1e+06 Pa, 1 of the Young's modulus of 'block'", true);
+}
+END_TEST
+
+// A ball of R = 2.5 cm and .064 kg, E = 1 MPa, against a wall: by Hertz .52 of E in the middle at 9 m/s, .43
+// at 7 m/s, where the energy evenly stored would be .28 and .22.
+START_TEST(a_curved_body_presses_harder_than_a_flat_one) {
+  const char *const fast = "--set 'bodies.left.velocity=[9, 0, 0]' --set 'bodies.right.velocity=[-9, 0, 0]'";
+  const char *const slow = "--set 'bodies.left.velocity=[7, 0, 0]' --set 'bodies.right.velocity=[-7, 0, 0]'";
+  ck_says("impact_balls", slow, "crushed", false);
+  ck_says("impact_balls", fast, "crushed", true);
+}
+END_TEST
+
+START_TEST(a_mesh_in_mm_among_metres_is_told) {
+  ck_says("patch", "", "in mm", false);
+  ck_says("patch", "--set bodies.upper.place.scale=1000",
+          "'upper' is 1000 times as large as 'lower'; if the mesh of one is in mm, it needs place: {scale: "
+          "0.001}",
+          true);
+}
+END_TEST
+
+int main(void) {
+  TCase *cases = tcase_create("check");
+  tcase_add_test(cases, every_body_has_its_box);
+  tcase_add_test(cases, a_pressure_near_E_is_told_with_who_is_crushed);
+  tcase_add_test(cases, a_blow_that_a_body_cannot_store_is_told);
+  tcase_add_test(cases, a_curved_body_presses_harder_than_a_flat_one);
+  tcase_add_test(cases, a_mesh_in_mm_among_metres_is_told);
+  return suite_run("check", cases, 30);
+}
