@@ -38,8 +38,8 @@ struct ContactSystem {
   ContactEvaluation audits[2]; // candidate, reference; made by the first audit
   bool has_audits;
   // Made when they are first asked for: of the evaluation, and of what rests.
-  ContactTrace *traces, *resting_traces; //                         (given vertex_count)
-  ContactStatus status;                  // made when it is first asked for
+  ContactTrace *traces, *rings, *resting_traces; //                 (given vertex_count)
+  ContactStatus status;                          // made when it is first asked for
   bool has_status;
   ContactCounters counters;
 };
@@ -133,6 +133,7 @@ void contact_system_destroy(ContactSystem *system) {
   for (int k = 0; k < 2; k++) contact_evaluation_destroy(&system->audits[k]);
   contact_status_destroy(&system->status);
   memory_free(system->traces);
+  memory_free(system->rings);
   memory_free(system->resting_traces);
   memory_free(system);
 }
@@ -314,13 +315,17 @@ Status contact_system_trace(ContactSystem *system, const ContactEvaluation *eval
   const ContactLayout *layout = &system->layout;
   int count = system->stars.given_vertex_count;
   TRY(reserve_traces(system, &system->traces));
+  TRY(reserve_traces(system, &system->rings));
+  memset(system->rings, 0, (size_t)count * sizeof *system->rings);
   if (system->resting_traces && system->has_rest && system->rest.resting_count > 0)
     memcpy(system->traces, system->resting_traces, (size_t)count * sizeof *system->traces);
   else
     memset(system->traces, 0, (size_t)count * sizeof *system->traces);
-  if (contact_layout_has_field(layout))
+  if (contact_layout_has_field(layout)) {
     contact_trace_add(layout, &system->stars, evaluation, NULL, pulls, system->traces);
-  contact_trace_find(count, system->traces, result);
+    contact_trace_ring(layout, &system->stars, evaluation->positions, system->traces, system->rings);
+  }
+  contact_trace_find(count, system->traces, system->rings, result);
   return STATUS_OK;
 }
 
@@ -533,7 +538,7 @@ const ContactCounters *contact_system_counters(const ContactSystem *system) {
 size_t contact_system_bytes(const ContactSystem *system) {
   size_t sum = memory_held(system) + memory_held(system->positions) + memory_held(system->velocities) +
                memory_held(system->given_forces) + memory_held(system->given_covered) +
-               memory_held(system->given_volumes) + memory_held(system->traces) +
+               memory_held(system->given_volumes) + memory_held(system->traces) + memory_held(system->rings) +
                memory_held(system->resting_traces) + contact_stars_bytes(&system->stars) +
                contact_star_sink_bytes(&system->star_sink) + contact_footprint_layout(&system->layout) +
                contact_footprint_candidates(&system->candidates) + contact_footprint_near(&system->near) +

@@ -3,12 +3,18 @@
 
 #include <math.h>
 
+#include "base/tet.h"
 #include "base/vec3.h"
 #include "contact/limits.h"
 #include "contact/shape/shape.h"
 
 // A value is at most this many times the mean of its samples: of one that falls to 0 within them it is 1.5.
 static const double MOST = 2;
+
+// Of no more samples than numbers a fit says nothing of their scatter. Of those round a vertex the count is a
+// bound from below, as if its neighbours shared them all.
+static const double FEW = 3; // not chosen: a linear function in a plane has three numbers
+static const double FEW_ROUND = 2;
 
 // ---- Samples.
 
@@ -95,9 +101,9 @@ static double least_weight(const ContactStars *stars, int vertex) {
 }
 
 // Where a given vertex is.
-static Vec3 place_of(const ContactStars *stars, const ContactEvaluation *evaluation, int given) {
+static Vec3 place_of(const ContactStars *stars, const double *positions, int given) {
   int vertex = stars->is_needed ? stars->place[given] : given;
-  return vec3_at(evaluation->positions + 3 * (size_t)vertex);
+  return vec3_at(positions + 3 * (size_t)vertex);
 }
 
 static void add_side(const ContactLayout *layout, const ContactStars *stars,
@@ -113,7 +119,7 @@ static void add_side(const ContactLayout *layout, const ContactStars *stars,
     for (int c = 0; c < count; c++) {
       int given = carrier(stars, vertices[v], c, &weight);
       if (!(weight >= least)) continue;
-      Vec3 x = place_of(stars, evaluation, given);
+      Vec3 x = place_of(stars, evaluation->positions, given);
       add_sample(sample, lambda * weight, x, &traces[given]);
     }
   }
@@ -128,7 +134,7 @@ static void face_side(const ContactLayout *layout, const ContactStars *stars,
     if (layout->mesh.depths[vertices[v]] > 0 || given < 0) continue;
     ContactTrace *trace = &traces[given];
     if (!(trace->pressed > 0) || (trace->is_faced && trace->gap == 0)) continue;
-    Vec3 x = place_of(stars, evaluation, given);
+    Vec3 x = place_of(stars, evaluation->positions, given);
     double gap = gap_to_other(layout, evaluation, k, side, x, vec3_at(trace->force));
     if (gap == INFINITY) continue;
     trace->gap = trace->is_faced ? fmin(trace->gap, gap) : gap;
@@ -159,6 +165,75 @@ void contact_trace_add(const ContactLayout *layout, const ContactStars *stars,
     for (int side = 0; side < 2 && evaluation->pairs[k].cells[side] >= 0; side++)
       if (!is_wanted || is_wanted[evaluation->pairs[k].interface])
         face_side(layout, stars, evaluation, k, side, traces);
+}
+
+// ---- Rings.
+
+// Whether there are no more samples than these.
+static bool has_few(const ContactTrace *trace, double count) {
+  return !(trace->weight * trace->weight > count * trace->squares);
+}
+
+// Adds a share of a trace whose vertex is that way from the one of `to`. The same sample may be in both, so
+// their Σ w² is at most (√Σ w₁² + √Σ w₂²)².
+static void add_trace(const ContactTrace *from, Vec3 way, double share, ContactTrace *to) {
+  const double w = share * from->weight, products[6] = {way.x * way.x, way.y * way.y, way.z * way.z,
+                                                        way.x * way.y, way.y * way.z, way.x * way.z};
+  Vec3 arm = vec3_scale(share, vec3_at(from->arm));
+  const double crosses[6] = {2 * arm.x * way.x,
+                             2 * arm.y * way.y,
+                             2 * arm.z * way.z,
+                             arm.x * way.y + arm.y * way.x,
+                             arm.y * way.z + arm.z * way.y,
+                             arm.x * way.z + arm.z * way.x};
+  double root = sqrt(to->squares) + share * sqrt(from->squares);
+  to->weight += w;
+  to->squares = root * root;
+  vec3_accumulate(to->arm, vec3_add(arm, vec3_scale(w, way)));
+  for (int k = 0; k < 6; k++) to->spread[k] += share * from->spread[k] + crosses[k] + w * products[k];
+  for (int k = 0; k < CONTACT_TRACE_VALUES; k++) {
+    double value = share * from->values[k];
+    to->values[k] += value;
+    vec3_accumulate(to->moments[k],
+                    vec3_add(vec3_scale(share, vec3_at(from->moments[k])), vec3_scale(value, way)));
+  }
+}
+
+// Adds the trace of a neighbour as far as it is pressed the same way.
+static void add_neighbour(const ContactStars *stars, const double *positions, const ContactTrace *traces,
+                          int given, int neighbour, ContactTrace *ring) {
+  const ContactTrace *own = &traces[given], *other = &traces[neighbour];
+  Vec3 force = vec3_at(own->force), push = vec3_at(other->force);
+  double lengths = vec3_length(force) * vec3_length(push);
+  if (given == neighbour || !(other->weight > 0) || !(lengths > 0)) return;
+  Vec3 way = vec3_sub(place_of(stars, positions, neighbour), place_of(stars, positions, given));
+  add_trace(other, way, fmax(0, vec3_dot(force, push) / lengths), ring);
+}
+
+// To the rings of a contact vertex's carriers, from the carriers of another one on the same face.
+static void add_neighbours(const ContactStars *stars, const double *positions, const ContactTrace *traces,
+                           int vertex, int other, ContactTrace *rings) {
+  double weight, least = least_weight(stars, vertex), least_other = least_weight(stars, other);
+  for (int c = 0; c < carrier_count(stars, vertex); c++) {
+    int given = carrier(stars, vertex, c, &weight);
+    if (!(weight >= least) || !(traces[given].weight > 0) || !has_few(&traces[given], FEW)) continue;
+    for (int d = 0; d < carrier_count(stars, other); d++) {
+      int neighbour = carrier(stars, other, d, &weight);
+      if (weight >= least_other) add_neighbour(stars, positions, traces, given, neighbour, &rings[given]);
+    }
+  }
+}
+
+void contact_trace_ring(const ContactLayout *layout, const ContactStars *stars, const double *positions,
+                        const ContactTrace *traces, ContactTrace *rings) {
+  for (int cell = 0; cell < layout->mesh.cell_count; cell++)
+    for (int f = 0; f < 4; f++) {
+      if (!(layout->mesh.outer[cell] >> f & 1)) continue;
+      for (int v = 0; v < 3; v++)
+        for (int w = 0; w < 3; w++)
+          add_neighbours(stars, positions, traces, layout->mesh.cells[cell][tet_faces[f][v]],
+                         layout->mesh.cells[cell][tet_faces[f][w]], rings);
+    }
 }
 
 // ---- Values.
@@ -193,14 +268,8 @@ static Plane find_plane(const ContactTrace *trace, Vec3 normal) {
                  .spread = {fmax(0, middle + half), fmax(0, middle - half)}};
 }
 
-// Whether a fit has no more samples than numbers, which says nothing of their scatter.
-static bool has_few(const ContactTrace *trace) {
-  return !(trace->weight * trace->weight > 3 * trace->squares);
-}
-
 static double value_at(const ContactTrace *trace, const Plane *plane, int value) {
   double mean = trace->values[value] / trace->weight, at = mean;
-  if (has_few(trace)) return mean;
   for (int k = 0; k < 2; k++) {
     double together = vec3_dot(vec3_at(trace->moments[value]), plane->axes[k]) / trace->weight -
                       mean * plane->mean[k],
@@ -210,24 +279,33 @@ static double value_at(const ContactTrace *trace, const Plane *plane, int value)
   return fmin(fmax(at, 0), MOST * mean);
 }
 
-static void find(const ContactTrace *trace, double *pressure, double *depth, double traction[3]) {
+static void find(const ContactTrace *trace, const ContactTrace *ring, double *pressure, double *depth,
+                 double traction[3]) {
+  double *values[CONTACT_TRACE_VALUES] = {pressure, depth};
   *pressure = *depth = 0;
   for (int c = 0; c < 3; c++) traction[c] = 0;
   double length = vec3_length(vec3_at(trace->force));
   if (!(trace->is_faced && trace->weight > 0 && length > 0)) return;
-  if (trace->gap * trace->weight > trace->values[CONTACT_TRACE_DEPTH]) return; // beyond the rim
+  double left = 1 - trace->gap * trace->weight / trace->values[CONTACT_TRACE_DEPTH];
+  if (!(left > 0)) return; // beyond the rim
   Vec3 towards = vec3_scale(1 / length, vec3_at(trace->force));
-  Plane plane = find_plane(trace, towards);
-  *pressure = value_at(trace, &plane, CONTACT_TRACE_PRESSURE);
-  *depth = value_at(trace, &plane, CONTACT_TRACE_DEPTH);
+  ContactTrace fitted = *trace;
+  bool is_few = has_few(trace, FEW), is_fit = !is_few || !has_few(ring, FEW_ROUND);
+  if (is_few && is_fit) add_trace(ring, (Vec3){0, 0, 0}, trace->weight / ring->weight, &fitted);
+  Plane plane = find_plane(&fitted, towards);
+  for (int k = 0; k < CONTACT_TRACE_VALUES; k++) {
+    double mean = trace->values[k] / trace->weight, most = is_few ? left * mean : INFINITY;
+    *values[k] = fmin(is_fit ? value_at(&fitted, &plane, k) : mean, most);
+  }
   vec3_store(traction,
              vec3_scale(*pressure, vec3_add(towards, vec3_scale(1 / trace->pressed, vec3_at(trace->rub)))));
 }
 
-void contact_trace_find(int count, const ContactTrace *traces, const ContactTraceResult *result) {
+void contact_trace_find(int count, const ContactTrace *traces, const ContactTrace *rings,
+                        const ContactTraceResult *result) {
   for (int v = 0; v < count; v++) {
     double own[3];
-    find(&traces[v], &result->pressures[v], &result->depths[v],
+    find(&traces[v], &rings[v], &result->pressures[v], &result->depths[v],
          result->tractions ? result->tractions[v] : own);
   }
 }

@@ -8,12 +8,14 @@
 //
 //   r = x̄ − x_a,   m = Σ w r / Σ w,   C = Σ w r rᵀ / Σ w − m mᵀ,   p_a = p̄ − g·m,   C g = Σ w p r / Σ w − p̄ m
 //
-// Of three samples, counted by their weights as (Σ w)² / Σ w², or fewer the mean p̄ is told: a fit of three
-// numbers would follow their scatter. Along a direction in which the samples hardly spread, against their
-// distance, g is taken back to 0. So p is exact up to the edge of a punch, where the mean would be, and up to
-// a rim where it falls to 0, where the mean is far too large. A vertex that no cell of its pairs lies before
-// or behind, along their forces, is beyond the edge of the other body, and one that is farther outside of
-// that body than its samples are deep is beyond the rim: 0.
+// Of three samples, counted by their weights as (Σ w)² / Σ w², or fewer a fit would follow their scatter.
+// There the samples of the vertices round a, on faces of the surface, are added with the same weight in all,
+// as far as they are pressed the same way; and no more is told than p̄, or p̄ (1 − z/D̄) where a is outside of
+// the other body by a gap z, D̄ the mean depth of its own samples. Where the vertices round it have few as
+// well, that is told. Along a direction in which the samples hardly spread, against their distance, g is
+// taken back to 0. So p is exact up to the edge of a punch, where the mean would be, and up to a rim where it
+// falls to 0, where the mean is far too large. A vertex that no cell of its pairs lies before or behind,
+// along their forces, is beyond the edge of the other body, and one with z ≥ D̄ is beyond the rim: 0.
 #ifndef TETLAP_CONTACT_PRESSURE_TRACE_H
 #define TETLAP_CONTACT_PRESSURE_TRACE_H
 
@@ -50,6 +52,12 @@ void contact_trace_add(const ContactLayout *layout, const ContactStars *stars,
                        const ContactEvaluation *evaluation, const bool *is_wanted, const double (*pulls)[3],
                        ContactTrace *traces);
 
-void contact_trace_find(int count, const ContactTrace *traces, const ContactTraceResult *result);
+// Adds to the rings, zeroed (given vertex_count), the sums of the vertices round each one that has few
+// samples.
+void contact_trace_ring(const ContactLayout *layout, const ContactStars *stars, const double *positions,
+                        const ContactTrace *traces, ContactTrace *rings);
+
+void contact_trace_find(int count, const ContactTrace *traces, const ContactTrace *rings,
+                        const ContactTraceResult *result);
 
 #endif
