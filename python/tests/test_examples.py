@@ -49,6 +49,32 @@ class Examples(unittest.TestCase):
             self.assertLess(max(spread / identify.TRUTH), 0.02)
             self.assertLess(misfit, 15)  # six numbers, two parameters
 
+    def test_identify_finds_friction_and_damping_in_a_motion_too(self):
+        import identify_motion
+
+        (found, misfit, spread), = identify_motion.main(starts=["near"]).values()
+        self.assertLess(max(abs(found - identify_motion.TRUTH) / spread), 3)
+        self.assertLess(misfit, 20)  # eleven numbers, four parameters
+        self.assertLess(max(spread / identify_motion.TRUTH), 0.1)
+
+    def test_a_throw_gets_into_the_bowl_by_its_gradient(self):
+        import throw
+
+        points, values, way = throw.main(most=4)
+        self.assertGreater(values[0], 40)
+        self.assertLess(values[-1], 0.1 * values[0])
+        self.assertLess(way[-1, 2], 0)  # below the table
+        self.assertLess(np.linalg.norm(way[-1, :2] - throw.BOWL), 0.1)
+        self.assertLess(np.linalg.norm(way[-1] - way[-6]), 0.05)  # in the last 0.1 s [m]
+
+    def test_the_ridges_of_a_seal_press_as_prescribed(self):
+        import seal
+
+        points, values = seal.main(most=9)
+        self.assertGreater(values[0], 0.1)
+        np.testing.assert_allclose(seal.forces(points[-1]), seal.WANTED, rtol=0.02)
+        np.testing.assert_allclose(points[-1], points[-1][::-1], atol=0.05)  # the strip is symmetric, its tetrahedra are not quite
+
     def test_the_gripper_lifts_the_cube_and_carries_its_weight(self):
         import grip
 
