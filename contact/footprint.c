@@ -23,7 +23,7 @@ size_t contact_footprint_candidates(const ContactCandidates *candidates) {
   const ContactKeptCandidates *kept = &candidates->kept;
   size_t found = 0;
   for (int f = 0; f < candidates->found_count; f++) found += memory_held(candidates->found[f].pairs.pairs);
-  return found + of_list(&candidates->list) + of_list(&candidates->next) + of_list(&kept->list) +
+  return found + of_list(&candidates->list) + of_list(&kept->list) +
          HELD(kept->positions, kept->shapes, kept->expected, kept->is_left_out) +
          HELD(candidates->reference, candidates->found, candidates->is_listed, candidates->boxes,
               candidates->motions, candidates->expected, candidates->is_left_out);

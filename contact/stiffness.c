@@ -239,12 +239,13 @@ Status contact_stiffness_couple(ContactStiffness *stiffness, const ContactLayout
                                 const ContactCandidateList *candidates, double time, const double *positions,
                                 double reach, void *visitor,
                                 Status (*visit)(void *visitor, int count, const int *vertices)) {
-  if (!memory_reserve((void **)&stiffness->near_pairs, &stiffness->near_capacity, (size_t)candidates->count,
-                      sizeof(ContactPair)))
-    return status_no_memory("contact couplings");
   int count = 0;
-  for (int k = 0; k < candidates->count; k++)
-    if (is_within(layout, &candidates->pairs[k], time, positions, reach))
-      stiffness->near_pairs[count++] = candidates->pairs[k];
+  for (int k = 0; k < candidates->count; k++) {
+    if (!is_within(layout, &candidates->pairs[k], time, positions, reach)) continue;
+    if (!memory_reserve((void **)&stiffness->near_pairs, &stiffness->near_capacity, (size_t)count + 1,
+                        sizeof(ContactPair)))
+      return status_no_memory("contact couplings");
+    stiffness->near_pairs[count++] = candidates->pairs[k];
+  }
   return visit_elements(stiffness, layout, count, stiffness->near_pairs, visitor, visit);
 }

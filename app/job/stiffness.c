@@ -44,6 +44,9 @@ void app_stiffness_describe(const FemModel *model, const FemCompliance *choice, 
     add_reason(model, choice, (FemComplianceBound)reason, text, size, &used);
 }
 
+// A line names so many bodies, and counts the others.
+enum { NAMED = 3 };
+
 void app_stiffness_describe_levels(const FemModel *model, const FemCompliance *choice, char *text,
                                    size_t size) {
   size_t used = 0;
@@ -54,8 +57,10 @@ void app_stiffness_describe_levels(const FemModel *model, const FemCompliance *c
       if (choice->levels[b] != level) continue;
       if (count++ == 0)
         text_append(text, size, &used, "%scurved edges in %d parts (", used ? ", " : "", 1 << level);
-      text_append(text, size, &used, "%s'%s'", count > 1 ? ", " : "", fem_compliance_party_name(model, b));
+      if (count <= NAMED)
+        text_append(text, size, &used, "%s'%s'", count > 1 ? ", " : "", fem_compliance_party_name(model, b));
     }
+    if (count > NAMED) text_append(text, size, &used, " and %d more", count - NAMED);
     if (count > 0) text_append(text, size, &used, ")");
   }
   for (int b = 0; b < model->body_count; b++)

@@ -40,21 +40,22 @@ static void destroy_list(ContactCandidateList *list) {
   memory_free(list->cells);
 }
 
-// `to` has room for the pairs.
-static void copy_list(const ContactCandidateList *from, const ContactLayout *layout,
-                      ContactCandidateList *to) {
+static Status copy_list(const ContactCandidateList *from, const ContactLayout *layout,
+                        ContactCandidateList *to) {
   const size_t interfaces = (size_t)layout->interface_count;
+  if (!memory_reserve((void **)&to->pairs, &to->capacity, (size_t)from->count, sizeof *to->pairs))
+    return status_no_memory("the candidate lists");
   if (from->count > 0) memcpy(to->pairs, from->pairs, (size_t)from->count * sizeof *to->pairs);
   if (from->cell_count > 0) memcpy(to->cells, from->cells, (size_t)from->cell_count * sizeof *to->cells);
   memcpy(to->begin, from->begin, (interfaces + 1) * sizeof *to->begin);
   if (interfaces > 0) memcpy(to->margins, from->margins, interfaces * sizeof *to->margins);
   to->count = from->count, to->cell_count = from->cell_count;
+  return STATUS_OK;
 }
 
 Status contact_candidates_create(ContactCandidates *candidates, const ContactLayout *layout) {
   *candidates = (ContactCandidates){0};
   TRY(create_list(&candidates->list, layout));
-  TRY(create_list(&candidates->next, layout));
   candidates->reference = memory_zeroed(3 * (size_t)layout->mesh.position_count, sizeof(double));
   candidates->is_listed = memory_zeroed((size_t)layout->mesh.cell_count, 1);
   candidates->boxes = memory_zeroed((size_t)layout->def.body_count, sizeof *candidates->boxes);
@@ -71,7 +72,6 @@ Status contact_candidates_create(ContactCandidates *candidates, const ContactLay
 
 void contact_candidates_destroy(ContactCandidates *candidates) {
   destroy_list(&candidates->list);
-  destroy_list(&candidates->next);
   contact_candidates_drop(candidates);
   for (int f = 0; candidates->found && f < candidates->found_count; f++)
     contact_broad_destroy(&candidates->found[f].pairs);
@@ -261,23 +261,36 @@ static Status search_interfaces(ContactCandidates *candidates, const Search *sea
   return status_fail(found->status, "the search for pairs in contact failed once and not again");
 }
 
+// Whether what was found is in the list, and nothing else.
+static bool is_as_found(const ContactCandidates *candidates, int interface_count) {
+  const ContactCandidateList *list = &candidates->list;
+  for (int f = 0; f < interface_count; f++) {
+    const ContactPairList *found = &candidates->found[f].pairs;
+    if (list->begin[f + 1] - list->begin[f] != found->count) return false;
+    for (int k = 0; k < found->count; k++)
+      if (memcmp(list->pairs[list->begin[f] + k].cells, found->pairs[k], sizeof *found->pairs) != 0)
+        return false;
+  }
+  return true;
+}
+
 // The pairs of all interfaces, in their order.
 static Status collect_found(ContactCandidates *candidates, int interface_count) {
-  ContactCandidateList *next = &candidates->next;
+  ContactCandidateList *list = &candidates->list;
   size_t wanted = 0;
   for (int f = 0; f < interface_count; f++) wanted += (size_t)candidates->found[f].pairs.count;
-  next->count = 0;
   if (wanted > INT_MAX ||
-      !memory_reserve((void **)&next->pairs, &next->capacity, wanted, sizeof *next->pairs))
+      !memory_reserve((void **)&list->pairs, &list->capacity, wanted, sizeof *list->pairs))
     return status_no_memory("candidate pairs");
+  list->count = 0;
   for (int f = 0; f < interface_count; f++) {
     const ContactFound *found = &candidates->found[f];
-    next->begin[f] = next->count;
-    next->margins[f] = found->margin;
+    list->begin[f] = list->count;
+    list->margins[f] = found->margin;
     for (int k = 0; k < found->pairs.count; k++)
-      next->pairs[next->count++] = (ContactPair){f, {found->pairs.pairs[k][0], found->pairs.pairs[k][1]}};
+      list->pairs[list->count++] = (ContactPair){f, {found->pairs.pairs[k][0], found->pairs.pairs[k][1]}};
   }
-  next->begin[interface_count] = next->count;
+  list->begin[interface_count] = list->count;
   return STATUS_OK;
 }
 
@@ -292,14 +305,15 @@ void contact_candidates_list_cells(ContactCandidateList *list, unsigned char *is
   for (int k = 0; k < list->cell_count; k++) is_listed[list->cells[k]] = 0;
 }
 
-// Fills `next`.
 static Status search_all(ContactCandidates *candidates, const ContactLayout *layout, double time,
-                         const double *positions) {
+                         const double *positions, bool *has_changed) {
   Search search = {candidates, layout, time, positions};
+  candidates->searches++;
   bound_bodies(candidates, layout, positions);
   TRY(search_interfaces(candidates, &search));
+  *has_changed = !candidates->is_made || !is_as_found(candidates, layout->interface_count);
   TRY(collect_found(candidates, layout->interface_count));
-  contact_candidates_list_cells(&candidates->next, candidates->is_listed);
+  contact_candidates_list_cells(&candidates->list, candidates->is_listed);
   return STATUS_OK;
 }
 
@@ -325,19 +339,17 @@ Status contact_candidates_keep(ContactCandidates *candidates, const ContactLayou
   contact_candidates_drop(candidates);
   if (!candidates->is_fresh) return STATUS_OK;
   TRY(create_list(&kept->list, layout));
-  kept->list.pairs = memory_copy(list->pairs, (size_t)list->count, sizeof *list->pairs);
-  kept->list.capacity = (size_t)list->count;
   kept->positions =
       memory_copy(candidates->reference, 3 * (size_t)layout->mesh.position_count, sizeof *kept->positions);
   kept->expected = memory_copy(candidates->expected, (size_t)layout->party_count, sizeof *kept->expected);
   kept->shapes = memory_zeroed((size_t)layout->def.shape_count, sizeof *kept->shapes);
   kept->is_left_out =
       memory_copy(candidates->is_left_out, (size_t)layout->interface_count, sizeof *kept->is_left_out);
-  if (!kept->list.pairs || !kept->positions || !kept->expected || !kept->is_left_out || !kept->shapes) {
+  if (!kept->positions || !kept->expected || !kept->is_left_out || !kept->shapes ||
+      copy_list(list, layout, &kept->list)) {
     contact_candidates_drop(candidates);
     return status_no_memory("the candidate lists");
   }
-  copy_list(list, layout, &kept->list);
   for (int s = 0; s < layout->def.shape_count; s++)
     kept->shapes[s] = contact_shape_stand(&layout->def.shapes[s], candidates->reference_time);
   kept->time = candidates->reference_time;
@@ -376,24 +388,12 @@ static bool is_kept(const ContactCandidates *candidates, const ContactLayout *la
          memcmp(kept->positions, positions, 3 * (size_t)layout->mesh.position_count * sizeof *positions) == 0;
 }
 
-// Fills `next`.
 static Status find_all(ContactCandidates *candidates, const ContactLayout *layout, double time,
-                       const double *positions) {
-  ContactCandidateList *next = &candidates->next;
-  if (candidates->is_made || !is_kept(candidates, layout, time, positions)) {
-    candidates->searches++;
-    return search_all(candidates, layout, time, positions);
-  }
-  const size_t count = (size_t)candidates->kept.list.count;
-  if (!memory_reserve((void **)&next->pairs, &next->capacity, count, sizeof *next->pairs))
-    return status_no_memory("candidate pairs");
-  copy_list(&candidates->kept.list, layout, next);
-  return STATUS_OK;
-}
-
-static bool lists_are_equal(const ContactCandidateList *a, const ContactCandidateList *b) {
-  return a->count == b->count &&
-         (a->count == 0 || memcmp(a->pairs, b->pairs, (size_t)a->count * sizeof *a->pairs) == 0);
+                       const double *positions, bool *has_changed) {
+  if (candidates->is_made || !is_kept(candidates, layout, time, positions))
+    return search_all(candidates, layout, time, positions, has_changed);
+  *has_changed = true;
+  return copy_list(&candidates->kept.list, layout, &candidates->list);
 }
 
 // At the speeds with which motions were expected in `step`, the list holds for so long; a new list, for
@@ -421,11 +421,7 @@ Status contact_candidates_update(ContactCandidates *candidates, const ContactLay
   if (!wants_search(candidates, layout)) return STATUS_OK;
 
   double start = clock_wall_s();
-  TRY(find_all(candidates, layout, time, positions));
-  *has_changed = !candidates->is_made || !lists_are_equal(&candidates->list, &candidates->next);
-  ContactCandidateList previous = candidates->list;
-  candidates->list = candidates->next;
-  candidates->next = previous;
+  TRY(find_all(candidates, layout, time, positions, has_changed));
   memcpy(candidates->reference, positions, 3 * (size_t)layout->mesh.position_count * sizeof(double));
   candidates->reference_time = time;
   candidates->is_made = candidates->is_fresh = true;

@@ -51,7 +51,6 @@ typedef struct ContactCandidates {
   double time_left; // for which the list is expected to hold, at the speeds of the last update [s]
   ContactKeptCandidates kept;
   // Scratch memory.
-  ContactCandidateList next;
   ContactFound *found; // of each interface                       (found_count)
   int found_count;
   unsigned char *is_listed; // 0 between calls                        (cell_count)

@@ -127,12 +127,15 @@ static void mark(ContactNear *near, const ContactCandidateList *candidates) {
 static Status make(ContactNear *near, const ContactLayout *layout, const ContactCandidateList *candidates,
                    double time, const double *positions) {
   ContactCandidateList *list = &near->list;
-  size_t count = (size_t)candidates->count;
-  if (!memory_reserve((void **)&list->pairs, &list->capacity, count, sizeof *list->pairs) ||
-      !memory_reserve((void **)&near->is_kept, &near->kept_capacity, count, sizeof *near->is_kept))
+  if (!memory_reserve((void **)&near->is_kept, &near->kept_capacity, (size_t)candidates->count,
+                      sizeof *near->is_kept))
     return status_no_memory("candidate pairs");
   blow_up_cells(near, layout, candidates, positions);
   mark(near, candidates);
+  size_t kept = 0;
+  for (int k = 0; k < candidates->count; k++) kept += near->is_kept[k];
+  if (!memory_reserve((void **)&list->pairs, &list->capacity, kept, sizeof *list->pairs))
+    return status_no_memory("candidate pairs");
   list->count = 0;
   for (int f = 0; f < layout->interface_count; f++) {
     list->begin[f] = list->count;

@@ -93,10 +93,10 @@ static Status release(FemRunState *run) {
 
 static Status warn_of_overlaps(const FemSystem *system, const FemState *state) {
   const ContactEvaluation *contact;
-  char text[512];
+  char texts[FEM_RUN_START_TOLD][FEM_RUN_START_LENGTH];
   TRY(fem_effect_contact_evaluate(system, state, &contact));
-  for (int i = 0; (i = fem_run_start_overlap(system, contact, i, text, sizeof text)) >= 0; i++)
-    log_warning("%s", text);
+  int count = fem_run_start_overlaps(system, contact, texts);
+  for (int k = 0; k < count; k++) log_warning("%s", texts[k]);
   return STATUS_OK;
 }
 

@@ -276,6 +276,31 @@ START_TEST(bodies_that_overlap_at_the_start_are_named) {
 }
 END_TEST
 
+// Six cubes in a row, each in the next: three pairs are named, the other two are counted.
+START_TEST(many_bodies_that_overlap_are_counted) {
+  static char text[1 << 14];
+  char words[512], path[256];
+  make_folder();
+  snprintf(path, sizeof path, "%s/row.yaml", folder);
+  FILE *scene = fopen(path, "w");
+  ck_assert_ptr_nonnull(scene);
+  fputs("title: row\ntime: {end: 1e-6}\nbodies:\n", scene);
+  for (int b = 0; b < 6; b++)
+    fprintf(scene,
+            "  - {name: c%d, mesh: {box: {size: [1, 1, 1], cells: 1}}, place: {translate: [%g, 0, 0]}, "
+            "material: {young: 1e6, poisson: 0.3, density: 1000}}\n",
+            b, .99 * b);
+  fputs("contact: {}\n", scene);
+  ck_assert_int_eq(fclose(scene), 0);
+  snprintf(words, sizeof words, "check %s", path);
+  ck_assert_int_eq(print(words, text, sizeof text), 0);
+  ck_assert_msg(strstr(text, "'c2' and 'c3' overlap at the start") != NULL, "%s", text);
+  ck_assert_ptr_null(strstr(text, "'c3' and 'c4' overlap"));
+  ck_assert_msg(strstr(text, "2 more such pairs of bodies overlap at the start") != NULL, "%s", text);
+  remove_folder();
+}
+END_TEST
+
 START_TEST(progress_in_a_pipe_is_lines) {
   static char text[1 << 16];
   char words[512];
@@ -312,6 +337,7 @@ int main(void) {
   tcase_add_test(cases, no_peak_of_a_force_is_missed);
   tcase_add_test(cases, what_holds_a_body_is_told);
   tcase_add_test(cases, bodies_that_overlap_at_the_start_are_named);
+  tcase_add_test(cases, many_bodies_that_overlap_are_counted);
   tcase_add_test(cases, progress_in_a_pipe_is_lines);
   tcase_add_test(cases, steps_that_never_end_are_refused);
   return suite_run("stop", cases, 60);

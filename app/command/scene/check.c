@@ -24,7 +24,7 @@
 #include "fem/scene/drive.h"
 #include "fem/sparse/solver.h"
 
-enum { MAX_NOTES = 24, MAX_OVERLAPS = 6, MAX_THIN = 6 };
+enum { MAX_NOTES = 24, MAX_THIN = 6 };
 // Elements through the thickness from which on linear ones bend as they should, roughly.
 static const double ENOUGH_LAYERS = 3.5;
 // A pressure over E from which on a body is told to be crushed: at half of it, it has half its height.
@@ -41,7 +41,7 @@ typedef struct Options {
 typedef struct Notes {
   const char *texts[MAX_NOTES];
   int count;
-  char overlaps[MAX_OVERLAPS][512];
+  char overlaps[FEM_RUN_START_TOLD][FEM_RUN_START_LENGTH];
   char thin[MAX_THIN][512];
   char crushed[512], far_larger[512];
 } Notes;
@@ -93,11 +93,8 @@ static Status note_overlaps(const AppJob *job, Notes *notes) {
   FemEnergy energy;
   Status status = fem_system_energy(&system, &system.accepted, &energy);
   if (!status) status = fem_effect_contact_evaluate(&system, &system.accepted, &contact);
-  for (int k = 0, i = 0; !status && k < MAX_OVERLAPS; k++, i++) {
-    i = fem_run_start_overlap(&system, contact, i, notes->overlaps[k], sizeof notes->overlaps[k]);
-    if (i < 0) break;
-    note(notes, true, notes->overlaps[k]);
-  }
+  int count = status ? 0 : fem_run_start_overlaps(&system, contact, notes->overlaps);
+  for (int k = 0; k < count; k++) note(notes, true, notes->overlaps[k]);
   fem_system_destroy(&system);
   return status;
 }

@@ -7,9 +7,11 @@
 
 #include "fem/effect/contact/contact.h"
 
-// The next two that overlap by that evaluation of contact (NULL: there is none), from interface `from` on, in
-// words; returns its number, −1: no more.
-int fem_run_start_overlap(const FemSystem *system, const ContactEvaluation *contact, int from, char *text,
-                          size_t size);
+enum { FEM_RUN_START_TOLD = 4, FEM_RUN_START_LENGTH = 512 };
+
+// Those that overlap by that evaluation of contact (NULL: there is none), in words, a text for each two; the
+// last one counts those for which there is no room. Returns how many texts there are.
+int fem_run_start_overlaps(const FemSystem *system, const ContactEvaluation *contact,
+                           char texts[FEM_RUN_START_TOLD][FEM_RUN_START_LENGTH]);
 
 #endif
