@@ -9,7 +9,7 @@
 #include "base/machine/clock.h"
 #include "base/memory.h"
 #include "base/ranks.h"
-#include "contact/pressure/imprint.h"
+#include "contact/pressure/patch/imprint.h"
 #include "contact/rest.h"
 #include "contact/search/bounds.h"
 #include "contact/shape/shape.h"

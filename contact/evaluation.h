@@ -6,7 +6,7 @@
 #define TETLAP_CONTACT_EVALUATION_H
 
 #include "contact/pressure/field.h"
-#include "contact/pressure/patches.h"
+#include "contact/pressure/patch/patches.h"
 #include "contact/rest.h"
 #include "contact/search/candidates.h"
 

@@ -19,8 +19,8 @@
 
 // ---- Contact: lists of pairs that are near. No result depends on which list found a pair.
 
-// A list is made for so many steps at the speeds of now.
-// Held by no test: with twice as many 02, 05, 10, 11 and 12 among the examples give the same bits.
+// A list is made for so many steps at the speeds of now, and renewed when one of them is used up.
+// Held by test_contact_lists.
 #define CONTACT_STEPS_AHEAD 2
 
 #endif

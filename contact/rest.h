@@ -6,7 +6,7 @@
 #define TETLAP_CONTACT_REST_H
 
 #include "contact/interface.h"
-#include "contact/pressure/patches.h"
+#include "contact/pressure/patch/patches.h"
 #include "contact/search/candidates.h"
 
 typedef struct ContactRest {

@@ -101,7 +101,7 @@ void contact_system_add_resting(const ContactSystem *system, double *force);
 Status contact_system_stiffness(ContactSystem *system, const ContactEvaluation *evaluation,
                                 const ContactStiffnessSink *sink);
 
-// The areas of contact (contact/pressure/area.h), those at rest included [m²].             (interface_count)
+// The areas of contact (contact/pressure/patch/area.h), those at rest included [m²]. (interface_count)
 void contact_system_areas(const ContactSystem *system, const ContactEvaluation *evaluation, double *areas);
 
 // Adds −∂f/∂x of an interface, or CONTACT_ALL_INTERFACES, exactly by the overlap model's own derivatives,

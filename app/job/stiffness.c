@@ -2,7 +2,7 @@
 #include "app/job/stiffness.h"
 
 #include "base/text.h"
-#include "contact/surface/smooth_points.h"
+#include "contact/surface/smooth/smooth_points.h"
 #include "fem/model/compliance/laws.h"
 
 static const char *const reasons[] = {

@@ -248,7 +248,7 @@ static double reach_into(const ContactShape *shape, double time, const double te
   for (int v = 0; v < 4; v++) low = fmax(low, contact_shape_depth(shape, time, vec3_at(tet + 3 * v)));
   if (low > 0 && !reaches(shape, time, tet, (1 + near) * low)) return low;
   while (high - low > near * high) {
-    double middle = low > 0 ? (low + high) / 2 : high / 16;
+    double middle = low > 0 ? (low + high) / 2 : high / 16; // not chosen: any divisor leads to the same depth
     if (!(middle > 0)) break;
     if (reaches(shape, time, tet, middle))
       low = middle;

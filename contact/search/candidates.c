@@ -131,19 +131,20 @@ double contact_candidates_reach(const ContactCandidates *candidates, const Conta
          contact_motion_approach(candidates->motions, &layout->interfaces[interface]);
 }
 
-// Half of the margin is used up, or the next step might use up the rest. The latter cannot be helped by a
-// search right after the last one, unless nothing was near and the margin may grow.
+// One of the steps that the margin is made for is used up, or the next step might use up the rest. The latter
+// cannot be helped by a search before half of that is used up, unless nothing was near and the margin may
+// grow.
 static bool wants_search(const ContactCandidates *candidates, const ContactLayout *layout) {
   if (!candidates->is_made) return true;
   for (int f = 0; f < layout->interface_count; f++) {
     if (candidates->is_left_out[f]) continue;
     const ContactInterfaceDef *interface = &layout->interfaces[f];
-    double margin = candidates->list.margins[f],
+    double margin = candidates->list.margins[f], share = margin / CONTACT_STEPS_AHEAD,
            moved = contact_motion_approach(candidates->motions, interface);
     bool is_empty =
         candidates->list.begin[f] == candidates->list.begin[f + 1] && interface->a != interface->b;
     bool may_leave = moved + contact_motion_approach(candidates->expected, interface) > margin;
-    if (!(moved <= margin / 2) || (may_leave && (is_empty || moved > margin / 4))) return true;
+    if (!(moved <= share) || (may_leave && (is_empty || moved > share / 2))) return true;
   }
   return false;
 }

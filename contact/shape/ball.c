@@ -8,6 +8,7 @@
 #include "base/tet.h"
 #include "base/vec3.h"
 #include "contact/shape/definite.h"
+#include "contact/shape/triangle.h"
 
 // About the centre of a ball many elements wide, terms of the size R³ add up to those of an element: 1e-16 of
 // them is what a force is off by. So they are computed in the processor's widest type.
@@ -273,29 +274,6 @@ void contact_ball_press(const double tet[12], const double centre[3], double rad
   for (int r = 0; r < 12; r++) hessian[13 * r] -= bound;
 }
 
-// The square of the distance of the origin from the segment a b.
-static double square_to_segment(Vec3 a, Vec3 b) {
-  Vec3 edge = vec3_sub(b, a);
-  double square = vec3_dot(edge, edge), share = square > 0 ? -vec3_dot(a, edge) / square : 0;
-  Vec3 nearest = vec3_add(a, vec3_scale(fmin(fmax(share, 0), 1), edge));
-  return vec3_dot(nearest, nearest);
-}
-
-// The same from a triangle: from the plane if the foot lies inside, else from an edge.
-static double square_to_triangle(const Vec3 corners[3]) {
-  Vec3 normal = vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]));
-  bool is_inside = vec3_dot(normal, normal) > 0;
-  double nearest = INFINITY;
-  for (int v = 0; v < 3; v++) {
-    Vec3 a = corners[v], b = corners[(v + 1) % 3];
-    is_inside = is_inside && vec3_dot(vec3_cross(normal, vec3_sub(b, a)), a) <= 0;
-    nearest = fmin(nearest, square_to_segment(a, b));
-  }
-  if (!is_inside) return nearest;
-  double height = vec3_dot(normal, corners[0]);
-  return height * height / vec3_dot(normal, normal);
-}
-
 // The share of b at the point of the segment a b that is nearest to the origin.
 static double share_on_segment(Vec3 a, Vec3 b) {
   Vec3 edge = vec3_sub(b, a);
@@ -317,7 +295,7 @@ static double nearest_on_triangle(const Vec3 corners[3], double weights[3]) {
   if (is_inside) return vec3_dot(normal, corners[0]) * vec3_dot(normal, corners[0]) / twice;
   for (int v = 0; v < 3; v++) {
     int next = (v + 1) % 3;
-    double square = square_to_segment(corners[v], corners[next]);
+    double square = contact_triangle_square_of_edge(corners[v], corners[next]);
     if (!(square < nearest)) continue;
     nearest = square;
     weights[next] = share_on_segment(corners[v], corners[next]);
@@ -359,7 +337,7 @@ double contact_ball_separation(const double tet[12], const double centre[3], dou
     Vec3 corners[3] = {x[tet_faces[f][0]], x[tet_faces[f][1]], x[tet_faces[f][2]]};
     Vec3 normal = vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]));
     is_inside = is_inside && vec3_dot(normal, corners[0]) * orientation >= 0;
-    nearest = fmin(nearest, square_to_triangle(corners));
+    nearest = fmin(nearest, contact_triangle_square(corners));
   }
   return is_inside ? -radius : sqrt(nearest) - radius;
 }

@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "contact/limits.h"
-#include "contact/surface/smooth_points.h"
+#include "contact/surface/smooth/smooth_points.h"
 
 typedef struct Weighed {
   double value, area;

@@ -6,8 +6,8 @@
 #include "contact/def.h"
 
 // A facet curves by the form that the ways of its three edges to the surface make, which is estimated from
-// the vertices round it (contact/surface/smooth_points.h). What is less than a twentieth of the surface
-// counts as none.
+// the vertices round it (contact/surface/smooth/smooth_points.h). What is less than a twentieth of the
+// surface counts as none.
 typedef struct ContactRoundness {
   double edge;   // of facets, along what curves: a tenth are finer; of flat ones where none curves [m]
   double round;  // 1/R of the convex ones, the median by area; 0: there are none [1/m]

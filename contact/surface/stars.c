@@ -6,9 +6,9 @@
 
 #include "base/memory.h"
 #include "contact/limits.h"
-#include "contact/surface/fit.h"
-#include "contact/surface/smooth.h"
-#include "contact/surface/smooth_row.h"
+#include "contact/surface/smooth/fit.h"
+#include "contact/surface/smooth/smooth.h"
+#include "contact/surface/smooth/smooth_row.h"
 #include "contact/surface/surface.h"
 
 // Of a quadratic element; of a star at most.

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "contact/shape/triangle.h"
 
 // ---- The faces.
 
@@ -151,29 +152,11 @@ static double square_to_box(const double box[6], Vec3 x) {
   return square;
 }
 
-static double square_to_segment(Vec3 a, Vec3 b) {
-  Vec3 edge = vec3_sub(b, a);
-  double square = vec3_dot(edge, edge), share = square > 0 ? -vec3_dot(a, edge) / square : 0;
-  Vec3 nearest = vec3_add(a, vec3_scale(fmin(fmax(share, 0), 1), edge));
-  return vec3_dot(nearest, nearest);
-}
-
-// From its plane where the foot lies inside, else from an edge.
 static double square_to_face(const ContactSurface *surface, const ContactSurfaceFace *face, Vec3 x) {
   Vec3 corners[3];
   for (int v = 0; v < 3; v++)
     corners[v] = vec3_sub(vec3_at(surface->rest + 3 * (size_t)face->vertices[v]), x);
-  Vec3 normal = vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]));
-  bool is_inside = vec3_dot(normal, normal) > 0;
-  double nearest = INFINITY;
-  for (int v = 0; v < 3; v++) {
-    Vec3 a = corners[v], b = corners[(v + 1) % 3];
-    is_inside = is_inside && vec3_dot(vec3_cross(normal, vec3_sub(b, a)), a) <= 0;
-    nearest = fmin(nearest, square_to_segment(a, b));
-  }
-  if (!is_inside) return nearest;
-  double height = vec3_dot(normal, corners[0]);
-  return height * height / vec3_dot(normal, normal);
+  return contact_triangle_square(corners);
 }
 
 double contact_surface_distance(const ContactSurface *surface, Vec3 x) {

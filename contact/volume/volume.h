@@ -19,7 +19,7 @@
 #define TETLAP_CONTACT_VOLUME_VOLUME_H
 
 #include "contact/pressure/field.h"
-#include "contact/pressure/patches.h"
+#include "contact/pressure/patch/patches.h"
 
 // The pairs of an evaluation; all arrays are borrowed.
 typedef struct ContactVolumePairs {

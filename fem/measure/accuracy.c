@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/evaluation.h"
-#include "contact/pressure/area.h"
+#include "contact/pressure/patch/area.h"
 #include "fem/model/limits.h"
 #include "fem/model/tolerance.h"
 

@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "contact/surface/smooth_points.h"
+#include "contact/surface/smooth/smooth_points.h"
 #include "fem/mesh/edges.h"
 
 static Vec3 middle_of(const FemMesh *mesh, const ContactSmooth *smooth, int low, int high) {

@@ -7,6 +7,7 @@
 #include <omp.h>
 
 #include "base/vec3.h"
+#include "contact/search/near.h"
 
 typedef struct Fixture {
   Blocks blocks;
@@ -378,6 +379,35 @@ START_TEST(a_visitor_that_fails_ends_the_visit) {
 }
 END_TEST
 
+// The short list of candidates is good for two steps of the expected length, a little less being covered in
+// each, and for no third one.
+START_TEST(a_list_lasts_for_the_steps_that_it_is_made_for) {
+  enum { STEPS = 6 };
+  Fixture *f = two_blocks(-0.2, 0.1);
+  const ContactLayout *layout = contact_system_layout(f->system);
+  const double step = 0.01, way = 0.03 * default_margin(f);
+  const ContactBody *upper = &f->def.bodies[1];
+  for (int v = upper->vertex_begin; v < upper->vertex_end; v++) f->velocities[3 * v + 2] = way / step;
+  ContactCandidates candidates;
+  ContactNear near;
+  ck_assert_ok(contact_candidates_create(&candidates, layout));
+  ck_assert_ok(contact_near_create(&near, layout));
+  for (int k = 0; k < STEPS; k++) {
+    double time = k * step, *x = moved(f, 0, 0, 0.95 * way * k);
+    bool has_changed;
+    ck_assert_ok(contact_candidates_update(&candidates, layout, time, x, f->velocities, step, &has_changed));
+    ck_assert_ok(contact_near_update(&near, layout, &candidates, time, x));
+    ck_assert(near.is_made);
+    ck_assert_int_eq(has_changed, k == 0);
+    ck_assert_int_eq(near.reference_time == time, k % 2 == 0);
+    free(x);
+  }
+  contact_near_destroy(&near);
+  contact_candidates_destroy(&candidates);
+  destroy(f);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("contact_lists");
   tcase_add_test(cases, an_old_list_gives_what_a_new_one_gives);
@@ -392,5 +422,6 @@ int main(void) {
   tcase_add_test(cases, a_list_that_is_kept_is_copied_where_a_search_would_find_the_same);
   tcase_add_loop_test(cases, couplings_hold_the_stiffness_here_and_within_reach, 0, CONTACT_POTENTIAL_COUNT);
   tcase_add_test(cases, a_visitor_that_fails_ends_the_visit);
+  tcase_add_test(cases, a_list_lasts_for_the_steps_that_it_is_made_for);
   return suite_run("contact_lists", cases, 60);
 }

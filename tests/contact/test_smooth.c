@@ -5,9 +5,9 @@
 
 #include "base/random.h"
 #include "base/vec3.h"
-#include "contact/surface/fit.h"
-#include "contact/surface/smooth.h"
-#include "contact/surface/smooth_row.h"
+#include "contact/surface/smooth/fit.h"
+#include "contact/surface/smooth/smooth.h"
+#include "contact/surface/smooth/smooth_row.h"
 #include "contact/surface/stars.h"
 #include "contact/surface/surface.h"
 #include "contact/system.h"

@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/surface/roundness.h"
-#include "contact/surface/smooth_points.h"
+#include "contact/surface/smooth/smooth_points.h"
 #include "fem/model/compliance/blow.h"
 #include "fem/model/compliance/leaf.h"
 #include "fem/model/compliance/patch.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The vertices that carry a vertex or a point of a smooth surface, once the mean way off the chords has been
-// taken out (contact/surface/smooth.h).
-#ifndef TETLAP_CONTACT_SURFACE_SMOOTH_ROW_H
-#define TETLAP_CONTACT_SURFACE_SMOOTH_ROW_H
+// taken out (contact/surface/smooth/smooth.h).
+#ifndef TETLAP_CONTACT_SURFACE_SMOOTH_SMOOTH_ROW_H
+#define TETLAP_CONTACT_SURFACE_SMOOTH_SMOOTH_ROW_H
 
-#include "contact/surface/smooth_points.h"
+#include "contact/surface/smooth/smooth_points.h"
 
 enum { CONTACT_SMOOTH_ROW_COUNT = 512 };
 

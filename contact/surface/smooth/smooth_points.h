@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The points of a smooth surface (contact/surface/smooth.h): which edges are divided, where the new points
-// lie, and which vertices carry them.
-#ifndef TETLAP_CONTACT_SURFACE_SMOOTH_POINTS_H
-#define TETLAP_CONTACT_SURFACE_SMOOTH_POINTS_H
+// The points of a smooth surface (contact/surface/smooth/smooth.h): which edges are divided, where the new
+// points lie, and which vertices carry them.
+#ifndef TETLAP_CONTACT_SURFACE_SMOOTH_SMOOTH_POINTS_H
+#define TETLAP_CONTACT_SURFACE_SMOOTH_SMOOTH_POINTS_H
 
 #include "base/vec3.h"
 #include "contact/def.h"

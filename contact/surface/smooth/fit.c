@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "contact/surface/fit.h"
+#include "contact/surface/smooth/fit.h"
 
 #include <assert.h>
 #include <string.h>

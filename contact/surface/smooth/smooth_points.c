@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "contact/surface/smooth_points.h"
+#include "contact/surface/smooth/smooth_points.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "contact/limits.h"
-#include "contact/surface/fit.h"
+#include "contact/surface/smooth/fit.h"
 
 enum { MOST_FACES = CONTACT_FIT_MOST_COUNT / 2 };
 

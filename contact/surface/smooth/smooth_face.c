@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "contact/surface/smooth_face.h"
+#include "contact/surface/smooth/smooth_face.h"
 
 enum { MOST_PARTS = 1 << CONTACT_SMOOTH_MOST_LEVEL };
 

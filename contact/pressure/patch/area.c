@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "contact/pressure/area.h"
+#include "contact/pressure/patch/area.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "contact/pressure/patches.h"
+#include "contact/pressure/patch/patches.h"
 
 #include "base/memory.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "contact/surface/smooth_row.h"
+#include "contact/surface/smooth/smooth_row.h"
 
-#include "contact/surface/fit.h"
-#include "contact/surface/smooth_face.h"
+#include "contact/surface/smooth/fit.h"
+#include "contact/surface/smooth/smooth_face.h"
 
 static Vec3 rest_of(const ContactSmooth *smooth, int vertex) {
   return vec3_at(smooth->def->rest + 3 * (size_t)vertex);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A face between divided and whole edges, in triangles. Which ones depends on the face alone, so neighbours
 // fit.
-#ifndef TETLAP_CONTACT_SURFACE_SMOOTH_FACE_H
-#define TETLAP_CONTACT_SURFACE_SMOOTH_FACE_H
+#ifndef TETLAP_CONTACT_SURFACE_SMOOTH_SMOOTH_FACE_H
+#define TETLAP_CONTACT_SURFACE_SMOOTH_SMOOTH_FACE_H
 
-#include "contact/surface/smooth_points.h"
+#include "contact/surface/smooth/smooth_points.h"
 
 enum { CONTACT_SMOOTH_FACE_MOST = 1 << 2 * CONTACT_SMOOTH_MOST_LEVEL };
 

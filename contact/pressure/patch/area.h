@@ -9,8 +9,8 @@
 // surface counts less than B's. Of a shape without elements, A = Σ |S_f ∩ shape| (n_f · ĝ)₊, by triangles
 // that are quartered where its surface passes. With other potentials, which know no surface, it is Σ of
 // contact_field_area.
-#ifndef TETLAP_CONTACT_PRESSURE_AREA_H
-#define TETLAP_CONTACT_PRESSURE_AREA_H
+#ifndef TETLAP_CONTACT_PRESSURE_PATCH_AREA_H
+#define TETLAP_CONTACT_PRESSURE_PATCH_AREA_H
 
 #include "contact/evaluation.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "contact/pressure/imprint.h"
+#include "contact/pressure/patch/imprint.h"
 
 #include <math.h>
 

@@ -7,8 +7,8 @@
 //     node ──► elements   ──► pairs
 //
 // The cost is that of the list, whatever the size of the meshes.
-#ifndef TETLAP_CONTACT_PRESSURE_PATCHES_H
-#define TETLAP_CONTACT_PRESSURE_PATCHES_H
+#ifndef TETLAP_CONTACT_PRESSURE_PATCH_PATCHES_H
+#define TETLAP_CONTACT_PRESSURE_PATCH_PATCHES_H
 
 #include "contact/search/layout.h"
 

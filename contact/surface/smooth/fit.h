@@ -10,8 +10,8 @@
 // the point at 0), put it on that surface: where the vertices move as a quadratic function, so does the
 // point. Affine functions are always kept. Quadratic forms that the vertices do not tell from them (across
 // two rows of vertices), or that would take large weights, are left out.
-#ifndef TETLAP_CONTACT_SURFACE_FIT_H
-#define TETLAP_CONTACT_SURFACE_FIT_H
+#ifndef TETLAP_CONTACT_SURFACE_SMOOTH_FIT_H
+#define TETLAP_CONTACT_SURFACE_SMOOTH_FIT_H
 
 #include <stdbool.h>
 

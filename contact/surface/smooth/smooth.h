@@ -3,10 +3,10 @@
 // faces on a curved surface are divided, and the new points lie on a surface estimated from the mesh.
 //
 // An edge between two faces that make less than the crease angle is divided into 2^level parts at points that
-// both rings of vertices round its ends carry (contact/surface/fit.h): exact for quadratics at rest and for
-// whatever quadratic motion. A crease runs through its vertices as a polynomial curve and ends at corners.
-// An edge that is straight stays whole, so a body of flat faces stays as it is. A point keeps within a
-// quarter of the height of the tetrahedra at the surface; further in where a cell would be inside out.
+// both rings of vertices round its ends carry (contact/surface/smooth/fit.h): exact for quadratics at rest
+// and for whatever quadratic motion. A crease runs through its vertices as a polynomial curve and ends at
+// corners. An edge that is straight stays whole, so a body of flat faces stays as it is. A point keeps within
+// a quarter of the height of the tetrahedra at the surface; further in where a cell would be inside out.
 //
 // So carried, an even pressure would load vertices unevenly where the mesh is irregular or ends: the mean way
 // off the chords, μ_i = Σ_f ∫_f (x − chord) dA / Σ_f A_f over the faces f round vertex i, linear in the
@@ -18,10 +18,10 @@
 // face on the curved surface; else from a point o inside, at λ_f = δ/height_f for the faces on the surface, ¼
 // for the others, δ as in contact/surface/mesh.h. Which triangles a face is cut into depends on the face
 // alone, so neighbours fit.
-#ifndef TETLAP_CONTACT_SURFACE_SMOOTH_H
-#define TETLAP_CONTACT_SURFACE_SMOOTH_H
+#ifndef TETLAP_CONTACT_SURFACE_SMOOTH_SMOOTH_H
+#define TETLAP_CONTACT_SURFACE_SMOOTH_SMOOTH_H
 
-#include "contact/surface/smooth_points.h"
+#include "contact/surface/smooth/smooth_points.h"
 
 enum {
   CONTACT_SMOOTH_MOST_CELLS = 1 << (2 * CONTACT_SMOOTH_MOST_LEVEL + 2), // of four faces

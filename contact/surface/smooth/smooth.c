@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "contact/surface/smooth.h"
+#include "contact/surface/smooth/smooth.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/tet.h"
 #include "contact/limits.h"
-#include "contact/surface/smooth_face.h"
+#include "contact/surface/smooth/smooth_face.h"
 
 static Vec3 rest_of(const ContactSmooth *smooth, int vertex) {
   return vec3_at(smooth->def->rest + 3 * (size_t)vertex);
