@@ -93,7 +93,7 @@ static Status release(FemRunState *run) {
 
 static Status warn_of_overlaps(const FemSystem *system, const FemState *state) {
   const ContactEvaluation *contact;
-  char texts[FEM_RUN_START_TOLD][FEM_RUN_START_LENGTH];
+  char texts[FEM_RUN_START_TOLD_COUNT][FEM_RUN_START_TEXT_SIZE];
   TRY(fem_effect_contact_evaluate(system, state, &contact));
   int count = fem_run_start_overlaps(system, contact, texts);
   for (int k = 0; k < count; k++) log_warning("%s", texts[k]);

@@ -41,7 +41,7 @@ typedef struct Options {
 typedef struct Notes {
   const char *texts[MAX_NOTES];
   int count;
-  char overlaps[FEM_RUN_START_TOLD][FEM_RUN_START_LENGTH];
+  char overlaps[FEM_RUN_START_TOLD_COUNT][FEM_RUN_START_TEXT_SIZE];
   char thin[MAX_THIN][512];
   char crushed[512], far_larger[512];
 } Notes;

@@ -16,7 +16,7 @@ static double deepest_of(const FemModel *model, const double *covered, int body)
 }
 
 int fem_run_start_overlaps(const FemSystem *system, const ContactEvaluation *contact,
-                           char texts[FEM_RUN_START_TOLD][FEM_RUN_START_LENGTH]) {
+                           char texts[FEM_RUN_START_TOLD_COUNT][FEM_RUN_START_TEXT_SIZE]) {
   void *effect = fem_system_effect(system, &fem_effect_contact);
   if (!contact) return 0;
   int interface_count = contact_system_layout(fem_effect_contact_system(effect))->interface_count, count = 0;
@@ -27,18 +27,18 @@ int fem_run_start_overlaps(const FemSystem *system, const ContactEvaluation *con
     if (!(interfaces[i].volume > least)) continue;
     double deepest = fmax(deepest_of(system->model, covered, interfaces[i].a),
                           deepest_of(system->model, covered, interfaces[i].b));
-    if (++count >= FEM_RUN_START_TOLD) deepest_left = fmax(deepest_left, deepest);
-    if (count > FEM_RUN_START_TOLD) continue;
+    if (++count >= FEM_RUN_START_TOLD_COUNT) deepest_left = fmax(deepest_left, deepest);
+    if (count > FEM_RUN_START_TOLD_COUNT) continue;
     snprintf(
-        texts[count - 1], FEM_RUN_START_LENGTH,
+        texts[count - 1], FEM_RUN_START_TEXT_SIZE,
         "'%s' and '%s' overlap at the start: %.3g m³ in %d pairs, up to %.3g %% of an element; they will "
         "be pushed apart at once: move them apart if that is not meant",
         fem_effect_contact_name(effect, interfaces[i].a), fem_effect_contact_name(effect, interfaces[i].b),
         interfaces[i].volume, interfaces[i].active_count, 100 * deepest);
   }
-  if (count <= FEM_RUN_START_TOLD) return count;
-  snprintf(texts[FEM_RUN_START_TOLD - 1], FEM_RUN_START_LENGTH,
+  if (count <= FEM_RUN_START_TOLD_COUNT) return count;
+  snprintf(texts[FEM_RUN_START_TOLD_COUNT - 1], FEM_RUN_START_TEXT_SIZE,
            "%d more such pairs of bodies overlap at the start, by up to %.3g %% of an element",
-           count - FEM_RUN_START_TOLD + 1, 100 * deepest_left);
-  return FEM_RUN_START_TOLD;
+           count - FEM_RUN_START_TOLD_COUNT + 1, 100 * deepest_left);
+  return FEM_RUN_START_TOLD_COUNT;
 }

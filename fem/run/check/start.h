@@ -7,11 +7,11 @@
 
 #include "fem/effect/contact/contact.h"
 
-enum { FEM_RUN_START_TOLD = 4, FEM_RUN_START_LENGTH = 512 };
+enum { FEM_RUN_START_TOLD_COUNT = 4, FEM_RUN_START_TEXT_SIZE = 512 };
 
 // Those that overlap by that evaluation of contact (NULL: there is none), in words, a text for each two; the
 // last one counts those for which there is no room. Returns how many texts there are.
 int fem_run_start_overlaps(const FemSystem *system, const ContactEvaluation *contact,
-                           char texts[FEM_RUN_START_TOLD][FEM_RUN_START_LENGTH]);
+                           char texts[FEM_RUN_START_TOLD_COUNT][FEM_RUN_START_TEXT_SIZE]);
 
 #endif
