@@ -144,3 +144,24 @@ void overlap_blend_mix(double share, const double share_gradient[24], const Over
   for (int c = 0; c < 3; c++) to->centroid[c] += part * (clip->centroid[c] - to->centroid[c]);
   to->volume = volume;
 }
+
+void overlap_blend_turn(const OverlapBlendShare *share, double difference, const double apart[24],
+                        const double *other_hessian, double *gradient, double *hessian) {
+  for (int i = 0; i < SIZE && hessian; i++)
+    for (int j = i; j < SIZE; j++) {
+      int at = SIZE * i + j;
+      hessian[at] += share->value * (other_hessian[at] - hessian[at]) + share->gradient[i] * apart[j] +
+                     apart[i] * share->gradient[j] + difference * share->hessian[at];
+      hessian[SIZE * j + i] = hessian[at];
+    }
+  for (int i = 0; i < SIZE && gradient; i++)
+    gradient[i] += share->value * apart[i] + difference * share->gradient[i];
+}
+
+void overlap_blend_move(double share, double other_volume, const double other_centroid[3], double *volume,
+                        double *centroid) {
+  *volume += share * (other_volume - *volume);
+  double part = *volume > 0 ? share * other_volume / *volume : 0;
+  for (int c = 0; c < 3 && centroid; c++)
+    centroid[c] = *volume > 0 ? centroid[c] + part * (other_centroid[c] - centroid[c]) : 0;
+}

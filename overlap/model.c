@@ -2,87 +2,11 @@
 #include "overlap/model.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/memory.h"
-#include "base/text.h"
 #include "overlap/centroid.h"
-#include "overlap/clip/clip.h"
-#include "overlap/exact/exact.h"
-#include "overlap/foreign/foreign.h"
-#include "overlap/geo/model.h"
-#include "overlap/hybrid/hybrid.h"
 #include "overlap/portions.h"
 #include "overlap/separation.h"
-#include "overlap/source.h"
-#include "overlap/tpn/model.h"
-#include "overlap/weights.h"
-
-// In those programs that link it; the library that others embed (overlap/api) does not.
-extern const OverlapOps overlap_cgal_ops __attribute__((weak));
-
-// The fastest first: what a person reads when asking for the models.
-static const OverlapOps *const models[] = {
-    &overlap_clip_ops,      &overlap_clip32_ops, &overlap_clip_scalar_ops, &overlap_geo_small_ops,
-    &overlap_geo_ops,       &overlap_tpn_ops,    &overlap_tpn_bf16_ops,    &overlap_tpn_published_ops,
-    &overlap_tpn_scene_ops, &overlap_hybrid_ops, &overlap_exact_ops,       &overlap_cgal_ops,
-};
-enum { MOST_MODELS = sizeof models / sizeof *models };
-
-static int model_count(void) {
-  return MOST_MODELS - (&overlap_cgal_ops == NULL);
-}
-
-const OverlapOps *const *overlap_model_list(int *count) {
-  *count = model_count();
-  return models;
-}
-
-static Status fail_unknown(const char *name) {
-  char known[256] = "";
-  size_t used = 0;
-  TextGuess guess = text_guess_of(name);
-  for (int m = 0; m < model_count(); m++) {
-    text_append(known, sizeof known, &used, "%s%s", m ? ", " : "", models[m]->name);
-    text_guess_offer(&guess, models[m]->name);
-  }
-  if (guess.best)
-    return status_fail(STATUS_INPUT, "there is no overlap model '%s': did you mean '%s'? Known are %s", name,
-                       guess.best, known);
-  return status_fail(STATUS_INPUT, "there is no overlap model '%s': known are %s", name, known);
-}
-
-// The model that a weights file holds.
-static Status find_by_file(const char *path, const OverlapOps **ops) {
-  OverlapWeightsKind kind;
-  TRY(overlap_weights_kind(path, &kind));
-  *ops = kind == OVERLAP_WEIGHTS_TPN ? &overlap_tpn_ops : &overlap_geo_ops;
-  return STATUS_OK;
-}
-
-Status overlap_model_create_with(OverlapModel *model, const char *name, const char *weights,
-                                 const OverlapOptions *options) {
-  *model = (OverlapModel){0};
-  if (overlap_source_is_foreign(name))
-    return overlap_foreign_create(&model->self, &model->ops, name, options);
-  const OverlapOps *ops = NULL;
-  const char *network = overlap_source_network(name);
-  if (network) name = "hybrid", weights = network;
-  for (int m = 0; m < model_count(); m++)
-    if (strcmp(models[m]->name, name) == 0) ops = models[m];
-  if (!ops && overlap_weights_is_path(name)) {
-    TRY(find_by_file(name, &ops));
-    weights = name;
-  }
-  if (!ops) return fail_unknown(name);
-  if (ops->create) TRY(ops->create(&model->self, weights, options));
-  model->ops = ops;
-  return STATUS_OK;
-}
-
-Status overlap_model_create(OverlapModel *model, const char *name) {
-  return overlap_model_create_with(model, name, NULL, NULL);
-}
 
 bool overlap_model_has_ghosts(const OverlapModel *model) {
   return model->ops->has_ghosts && model->ops->has_ghosts(model->self);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Overlap models by name: the list of those there are (overlap/ops.h says what one is), and batches evaluated
-// with OpenMP.
+// An overlap model as it was made (overlap/models.h; overlap/ops.h says what one is): what it can give, and
+// batches evaluated with OpenMP.
 #ifndef TETLAP_OVERLAP_MODEL_H
 #define TETLAP_OVERLAP_MODEL_H
 
@@ -10,18 +10,6 @@ typedef struct OverlapModel {
   const OverlapOps *ops;
   void *self; // owned
 } OverlapModel;
-
-// The models there are, and how many.
-const OverlapOps *const *overlap_model_list(int *count);
-
-// Makes the model that a word names (overlap/source.h). STATUS_INPUT: unknown name; the message lists the
-// known ones and the nearest.
-Status overlap_model_create(OverlapModel *model, const char *name);
-
-// The same with options for networks, and for `hybrid` the name or file of its network, which `hybrid=WORD`
-// has itself; both may be NULL.
-Status overlap_model_create_with(OverlapModel *model, const char *name, const char *weights,
-                                 const OverlapOptions *options);
 
 // Whether pairs without common interior may get a volume.
 bool overlap_model_has_ghosts(const OverlapModel *model);

@@ -54,7 +54,9 @@ OverlapBatch overlap_ops_part(const OverlapBatch *batch, int begin, int count) {
                         .hessian = batch->hessian ? batch->hessian + at * SIZE : NULL,
                         .flags = batch->flags ? batch->flags + begin : NULL,
                         .centroid = batch->centroid ? batch->centroid + 3 * (size_t)begin : NULL,
-                        .origins = part_of(&batch->origins, (size_t)begin)};
+                        .doubt = batch->doubt ? batch->doubt + begin : NULL,
+                        .origins = part_of(&batch->origins, (size_t)begin),
+                        .numbers = batch->numbers ? batch->numbers + begin : NULL};
 }
 
 void overlap_ops_swap(const double pair[24], double swapped[24]) {

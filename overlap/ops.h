@@ -51,7 +51,9 @@ typedef struct OverlapBatch {
   double *hessian;        // out, or NULL: d²V/dx² [m]        (pair_count, 24, 24), symmetric
   unsigned *flags;        // out, or NULL: OverlapFlag (pair_count)
   double *centroid;       // out, or NULL: x̄ of the intersection [m] (pair_count, 3)
+  double *doubt;          // out, or NULL: how far V may be off [m³]  (pair_count); where it gives_doubt
   OverlapOrigins origins; // for models that want them
+  const int *numbers;     // what messages call the pairs            (pair_count); NULL: their places
 } OverlapBatch;
 
 // Derivatives backwards: of a number g that follows V, x̄ and ∇V, by the coordinates of the pairs.
@@ -83,7 +85,7 @@ typedef struct OverlapTraining {
   Status (*write)(const void *self, const double *numbers, const char *path);
 } OverlapTraining;
 
-// What a model implements. One per model, `static const`, listed in model.c.
+// What a model implements. One per model, `static const`, listed in models.c.
 typedef struct OverlapOps {
   const char *name;
   const char *help;        // one line for lists and the manual
@@ -130,6 +132,8 @@ typedef struct OverlapOps {
   const OverlapTraining *training;
   // Whether it wants to know the origins of pairs; NULL: no.
   bool (*wants_origins)(const void *self);
+  // Batches may want its doubt.
+  bool gives_doubt;
 } OverlapOps;
 
 // A capability that a model has however it was made.

@@ -2,11 +2,12 @@
 #include "overlap/source.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "overlap/weights.h"
 
-static const char COMMAND[] = "exec:", CHANNEL[] = "channel:", HYBRID[] = "hybrid=";
+static const char COMMAND[] = "exec:", CHANNEL[] = "channel:";
 
 static bool ends_in(const char *word, size_t length, const char *ending) {
   size_t size = strlen(ending);
@@ -21,14 +22,27 @@ static size_t python_path(const char *word) {
   return ends_in(word, length, ".py") ? length : 0;
 }
 
-const char *overlap_source_network(const char *word) {
-  return strncmp(word, HYBRID, sizeof HYBRID - 1) == 0 ? word + sizeof HYBRID - 1 : NULL;
+static bool begins_with(const char *word, const char *text) {
+  return strncmp(word, text, strlen(text)) == 0;
+}
+
+const char *overlap_source_inner(const char *word) {
+  size_t length = strspn(word, "abcdefghijklmnopqrstuvwxyz-");
+  char *end = (char *)word + length;
+  if (length == 0 || begins_with(word, COMMAND) || begins_with(word, CHANNEL)) return NULL;
+  if (*end == ':') strtod(end + 1, &end);
+  return *end == '=' ? end + 1 : NULL;
+}
+
+const char *overlap_source_model(const char *word) {
+  for (const char *inner; (inner = overlap_source_inner(word));) word = inner;
+  return word;
 }
 
 OverlapSource overlap_source_of(const char *word) {
-  if (overlap_source_network(word)) return OVERLAP_SOURCE_NAME; // one of ours, whose network it names
-  if (strncmp(word, COMMAND, sizeof COMMAND - 1) == 0) return OVERLAP_SOURCE_COMMAND;
-  if (strncmp(word, CHANNEL, sizeof CHANNEL - 1) == 0) return OVERLAP_SOURCE_CHANNEL;
+  word = overlap_source_model(word);
+  if (begins_with(word, COMMAND)) return OVERLAP_SOURCE_COMMAND;
+  if (begins_with(word, CHANNEL)) return OVERLAP_SOURCE_CHANNEL;
   size_t length = strlen(word);
   if (ends_in(word, length, ".so")) return OVERLAP_SOURCE_LIBRARY;
   if (python_path(word) > 0) return OVERLAP_SOURCE_PYTHON;
@@ -36,8 +50,7 @@ OverlapSource overlap_source_of(const char *word) {
 }
 
 size_t overlap_source_path(const char *word, const char **path) {
-  const char *network = overlap_source_network(word);
-  *path = network ? network : word;
+  *path = overlap_source_model(word);
   switch (overlap_source_of(*path)) {
   case OVERLAP_SOURCE_WEIGHTS:
   case OVERLAP_SOURCE_LIBRARY:
@@ -66,7 +79,7 @@ bool overlap_source_from(const char *word, const char *folder, char *text, size_
 }
 
 bool overlap_source_has_form(const char *word) {
-  return overlap_source_of(word) != OVERLAP_SOURCE_NAME || overlap_source_network(word) != NULL;
+  return overlap_source_of(word) != OVERLAP_SOURCE_NAME || overlap_source_inner(word) != NULL;
 }
 
 bool overlap_source_is_foreign(const char *word) {

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The word by which a model is named, everywhere: its form says what it is.
 //
-//   clip                  a model of the program's (overlap/model.h lists them)
+//   clip                  a model of the program's (overlap/models.h lists them)
 //   net.safetensors       weights of a network of ours
 //   mine.so               a library of the user's (include/tetlap/model.h)
 //   mine.py:volume        a function, or a torch.nn.Module, in a Python file
 //   mine.py               the one that is named `model`
 //   exec:COMMAND          a program that speaks the protocol of overlap/foreign/process.h
 //   channel:3:4:volume    a function of the program that started this one (the same protocol)
-//   hybrid, hybrid=WORD   a network that is answered for by `clip` where it doubts
+//   NAME=WORD             the model of a word with a wrapper round it (overlap/wrap/kinds.h), as in
+//   NAME:NUMBER=WORD      both=mine.so, fade:.05=both=mine.py:volume
+//   MODEL=net.safetensors a model of the program's with another network, as in tpn-scene=mine.safetensors
 #ifndef TETLAP_OVERLAP_SOURCE_H
 #define TETLAP_OVERLAP_SOURCE_H
 
@@ -24,13 +26,17 @@ typedef enum OverlapSource {
   OVERLAP_SOURCE_CHANNEL,
 } OverlapSource;
 
+// Of the innermost model.
 OverlapSource overlap_source_of(const char *word);
 
 // The part of the word that is a file's path: from *path on, so many characters. 0: it names no file.
 size_t overlap_source_path(const char *word, const char **path);
 
-// What stands after `hybrid=`; NULL: the word is no such one.
-const char *overlap_source_network(const char *word);
+// What stands after the first `NAME=` or `NAME:NUMBER=`; NULL: there is none.
+const char *overlap_source_inner(const char *word);
+
+// What stands after all of them: the word of the model itself.
+const char *overlap_source_model(const char *word);
 
 // The word with that path in the place of its own, into `text`; false: it does not fit.
 bool overlap_source_with_path(const char *word, const char *path, char *text, size_t size);

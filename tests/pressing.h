@@ -11,6 +11,7 @@
 #include "base/vec3.h"
 #include "contact/pressure/law.h"
 #include "contact/shape/convex.h"
+#include "overlap/models.h"
 
 static const double STIFFNESS = 1000;
 
@@ -30,7 +31,7 @@ static inline void start(Scene *scene, const char *model) {
   scene->rest = scene->rest ? scene->rest : blocks_copy(&scene->blocks);
   scene->still = calloc(3 * (size_t)scene->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(scene->still);
-  ck_assert_ok(overlap_model_create(&scene->model, model));
+  ck_assert_ok(overlap_models_create(&scene->model, model));
   ContactSystemDef def = blocks_def(&scene->blocks, scene->rest, &scene->model);
   def.potential = CONTACT_POTENTIAL_FIELD;
   def.stiffness = STIFFNESS;

@@ -6,13 +6,12 @@
 #include <unistd.h>
 
 #include "base/memory.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "overlap/source.h"
 
-// What stands before the file or name: `hybrid=`, or nothing.
+// The length of what stands before the file or name, as in `hybrid=`.
 static size_t prefix_of(const char *source) {
-  const char *network = overlap_source_network(source);
-  return network ? (size_t)(network - source) : 0;
+  return (size_t)(overlap_source_model(source) - source);
 }
 
 // Takes "." and "..", and what they undo, out of an absolute path.
@@ -66,7 +65,7 @@ typedef struct Entry {
 
 static bool is_known(const char *name) {
   int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
+  const OverlapOps *const *models = overlap_models_list(&count);
   for (int m = 0; m < count; m++)
     if (strcmp(models[m]->name, name) == 0) return true;
   return false;
@@ -100,7 +99,7 @@ static bool write_name(Entry *entry) {
     for (int parts = 0; parts < entry->parts && from > entry->path; parts += *from == '/') from--;
     from += *from == '/';
   } else if (overlap_source_is_foreign(from)) {
-    length = call_source(from, &from);
+    length = call_source(from + prefix, &from);
   } else {
     from += prefix;
   }

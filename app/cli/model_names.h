@@ -33,7 +33,7 @@ void app_model_names_find_one(const char *source, AppModelName name);
 // names no file.
 bool app_model_names_locate(const char *source, char path[PATH_MAX]);
 
-// The same behind the `hybrid=` of the source.
+// The same behind what stands before it in the source, as in `hybrid=`.
 bool app_model_names_settle(const char *source, char word[PATH_MAX]);
 
 #endif

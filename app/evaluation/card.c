@@ -12,8 +12,7 @@ Status app_evaluation_card_read(const OverlapModel *model, const char *name, App
   char path[PATH_MAX];
   *card = (AppModelCard){.family = model->ops->name};
   if (overlap_source_is_foreign(name)) return STATUS_OK;
-  const char *doubted = overlap_source_network(name);
-  if (doubted) name = doubted;
+  name = overlap_source_model(name);
   bool is_path = overlap_weights_is_path(name);
   if (!is_path && model->ops->weights) name = model->ops->weights;
   if (is_path)

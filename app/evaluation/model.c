@@ -4,22 +4,16 @@
 #include <string.h>
 
 #include "overlap/geo/model.h"
-#include "overlap/source.h"
-#include "overlap/tpn/model.h"
+#include "overlap/models.h"
 
-Status app_evaluation_model_open_with(OverlapModel *model, const char *name, const OverlapOptions *options) {
+Status app_evaluation_model_open(OverlapModel *model, const char *name) {
   *model = (OverlapModel){0};
-  if (strcmp(name, "geo-constant") != 0) return overlap_model_create_with(model, name, NULL, options);
+  if (strcmp(name, "geo-constant") != 0) return overlap_models_create(model, name);
   TRY(overlap_geo_model_create(&model->self, NULL));
   model->ops = &overlap_geo_ops;
   return STATUS_OK;
 }
 
-Status app_evaluation_model_open(OverlapModel *model, const char *name) {
-  return app_evaluation_model_open_with(model, name, NULL);
-}
-
 AppEvaluationLogits app_evaluation_model_logits(const OverlapModel *model) {
-  if (overlap_source_is_foreign(model->ops->name)) return model->ops->eval_logits;
-  return model->ops->eval_batch == overlap_tpn_model_eval_batch ? overlap_tpn_model_logits : NULL;
+  return model->ops->eval_logits;
 }

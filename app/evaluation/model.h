@@ -9,9 +9,6 @@
 // Destroy it with overlap_model_destroy. STATUS_INPUT: neither a known name nor a file that holds a model.
 Status app_evaluation_model_open(OverlapModel *model, const char *name);
 
-// The same with options for networks; NULL: the model's own.
-Status app_evaluation_model_open_with(OverlapModel *model, const char *name, const OverlapOptions *options);
-
 // What the model tells of a pair's status, if it does; NULL: it does not.
 AppEvaluationLogits app_evaluation_model_logits(const OverlapModel *model);
 

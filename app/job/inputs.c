@@ -45,8 +45,8 @@ static void find_weights(const FemSceneDef *scene, char path[PATH_MAX]) {
     path[overlap_source_path(path, &file)] = 0; // a Python file without the function's name
     return;
   }
-  const char *name = source, *network = strchr(source, '=');
-  if (strncmp(source, HYBRID, strlen(HYBRID)) == 0) name = network ? network + 1 : OVERLAP_HYBRID_NETWORK;
+  const char *name = overlap_source_model(source);
+  if (strcmp(name, HYBRID) == 0) name = OVERLAP_HYBRID_NETWORK;
   if (overlap_weights_find(name, path, PATH_MAX) != STATUS_OK) path[0] = 0;
 }
 

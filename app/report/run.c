@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "fem/output/vtk/pieces_read.h"
 #include "fem/output/vtk/pvd.h"
+#include "overlap/source.h"
 
 // Whole lines: of a run that goes on, or was killed, the last one may lack its end.
 static Status read_history(AppReportRun *run) {
@@ -184,17 +185,19 @@ void app_report_run_destroy(AppReportRun *run) {
   *run = (AppReportRun){0};
 }
 
+enum { SOURCE_SIZE = PATH_MAX + APP_MODEL_NAME };
+
 // As a command line would name the model that a summary tells of. False: it tells of none.
-static bool find_source(const Record *summary, char source[PATH_MAX + 8]) {
+static bool find_source(const Record *summary, char source[SOURCE_SIZE]) {
   const char *overlap = record_find_text(summary, "overlap"), *weights = record_find_text(summary, "weights");
   if (!overlap) return false;
-  const char *prefix = weights && strncmp(overlap, "hybrid=", 7) == 0 ? "hybrid=" : "";
-  snprintf(source, PATH_MAX + 8, "%s%s", prefix, weights ? weights : overlap);
+  const int before = weights ? (int)(overlap_source_model(overlap) - overlap) : 0; // its wrappers
+  snprintf(source, SOURCE_SIZE, "%.*s%s", before, overlap, weights ? weights : overlap);
   return true;
 }
 
 bool app_report_run_models(const AppReportRun *runs, int count, AppModelName *names) {
-  char(*texts)[PATH_MAX + 8] = memory_zeroed((size_t)count + 1, sizeof *texts);
+  char(*texts)[SOURCE_SIZE] = memory_zeroed((size_t)count + 1, sizeof *texts);
   const char **sources = memory_zeroed((size_t)count + 1, sizeof *sources);
   bool is_known = texts && sources;
   for (int r = 0; r < count && is_known; r++) {

@@ -8,7 +8,7 @@
 #include "app/stress/scenes.h"
 #include "base/memory.h"
 #include "base/text.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "overlap/source.h"
 
 static const char ANY[] = "any";
@@ -17,7 +17,7 @@ static Status fail_model(const char *word) {
   char known[256];
   size_t used = 0;
   int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
+  const OverlapOps *const *models = overlap_models_list(&count);
   TextGuess guess = text_guess_of(word);
   text_guess_offer(&guess, ANY);
   text_append(known, sizeof known, &used, "%s", ANY);
@@ -32,7 +32,7 @@ static Status fail_model(const char *word) {
 
 static bool is_known(const char *word) {
   int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
+  const OverlapOps *const *models = overlap_models_list(&count);
   for (int m = 0; m < count; m++)
     if (strcmp(models[m]->name, word) == 0) return true;
   return strcmp(ANY, word) == 0;

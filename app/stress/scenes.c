@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 static const double LIMIT_S = 60;
 static const char ANY[] = "any";
@@ -98,7 +98,7 @@ static long long pairs_of(const AppStressScene *scene, const AppStressOptions *o
 static bool is_able(const AppStressScene *scene, const AppStressOptions *options, const OverlapOps *ops,
                     AppStressRow *row) {
   OverlapModel model;
-  Status created = overlap_model_create(&model, ops->name);
+  Status created = overlap_models_create(&model, ops->name);
   overlap_model_destroy(&model);
   if (created) {
     app_stress_excuse(row, "%s", status_message());
@@ -134,7 +134,7 @@ static Status run_row(const AppStressScene *scene, const AppStressOptions *optio
 
 static Status run_scene(const AppStressScene *scene, const AppStressOptions *options, AppStress *stress) {
   int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
+  const OverlapOps *const *models = overlap_models_list(&count);
   if (scene->is_any)
     return app_stress_wants_model(options, ANY) ? run_row(scene, options, stress, NULL) : STATUS_OK;
   for (int m = 0; m < count; m++)

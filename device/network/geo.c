@@ -3,6 +3,7 @@
 
 #include "device/kernels/geo/rows.h"
 #include "overlap/geo/model.h"
+#include "overlap/models.h"
 
 static Status refuse(const char *what) {
   return status_fail(STATUS_INPUT, "the device kernels cannot evaluate this network: %s", what);
@@ -68,7 +69,7 @@ static Status take_memory(DeviceGeo *geo, const Device *device) {
 
 Status device_geo_create(DeviceGeo *geo, const Device *device, const char *name, int feature_count) {
   *geo = (DeviceGeo){0};
-  TRY(overlap_model_create(&geo->host, name));
+  TRY(overlap_models_create(&geo->host, name));
   TRY(send(geo, device, geo->host.self, feature_count));
   return take_memory(geo, device);
 }

@@ -210,7 +210,6 @@ typedef struct FemContactDef {
   FemContactPairDef *pairs; //                                (pair_count)
   int pair_count;
   char *overlap; // name of the overlap model
-  OverlapOptions net_options;
   double margin; // [m]; 0: chosen
   int smooth; // how often the edges of curved surfaces are halved for contact; 0: facets as they are; −1:
               // chosen

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "overlap/api/argument.h"
+#include "overlap/models.h"
 
 const char *tetlap_overlap_message(void) {
   return status_message();
@@ -18,7 +19,7 @@ const char *tetlap_overlap_version(void) {
 
 const char *tetlap_overlap_model(int index) {
   int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
+  const OverlapOps *const *models = overlap_models_list(&count);
   return index >= 0 && index < count ? models[index]->name : NULL;
 }
 
@@ -36,7 +37,7 @@ void overlap_api_handle_leave(int threads) {
 static Status make(TetlapOverlap *overlap, const TetlapOverlapOptions *options) {
   overlap->threads = options->threads;
   int before = overlap_api_handle_enter(overlap);
-  Status status = overlap_model_create_with(&overlap->model, options->model, options->weights, NULL);
+  Status status = overlap_models_create_with(&overlap->model, options->model, options->weights, NULL);
   overlap_api_handle_leave(before);
   return status;
 }

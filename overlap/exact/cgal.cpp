@@ -224,4 +224,5 @@ extern "C" const OverlapOps overlap_cgal_ops = {
     nullptr,            // eval_slopes
     nullptr,            // training
     nullptr,            // wants_origins
+    false,              // gives_doubt
 };

@@ -7,43 +7,41 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/vec3.h"
-#include "overlap/clip/clip.h"
 #include "overlap/foreign/library.h"
 #include "overlap/foreign/process.h"
 #include "overlap/foreign/request.h"
-#include "overlap/separation.h"
+#include "overlap/sizes.h"
 #include "overlap/source.h"
 
 typedef struct Foreign {
   OverlapOps ops;
   char name[128];
   OverlapForeignPort port;
-  bool keeps_ghosts;
-  pthread_mutex_t lock; // of all below, and of the port
-  int *rows;            // of the batch: those that are asked for            (request.count)
-  double *clipped;      // V by clipping [m³]                                (pair_count)
-  size_t row_capacity, clipped_capacity;
+  pthread_mutex_t lock; // of the request, and of the port
   OverlapForeignRequest request;
 } Foreign;
 
 static const unsigned PAIRS = 1u << OVERLAP_FOREIGN_PAIRS, VOLUME = 1u << OVERLAP_FOREIGN_VOLUME,
                       GRADIENT = 1u << OVERLAP_FOREIGN_GRADIENT, CENTROID = 1u << OVERLAP_FOREIGN_CENTROID,
                       REST = 1u << OVERLAP_FOREIGN_REST, BY_VOLUME = 1u << OVERLAP_FOREIGN_BY_VOLUME,
-                      BY_CENTROID = 1u << OVERLAP_FOREIGN_BY_CENTROID,
+                      BY_CENTROID = 1u << OVERLAP_FOREIGN_BY_CENTROID, DOUBT = 1u << OVERLAP_FOREIGN_DOUBT,
                       BY_GRADIENT = 1u << OVERLAP_FOREIGN_BY_GRADIENT, SLOPE = 1u << OVERLAP_FOREIGN_SLOPE;
 
 static void destroy(void *self) {
   Foreign *foreign = self;
   if (foreign->port.close) foreign->port.close(foreign->port.self);
-  memory_free(foreign->rows), memory_free(foreign->clipped);
   overlap_foreign_request_destroy(&foreign->request);
   pthread_mutex_destroy(&foreign->lock);
   memory_free(foreign);
 }
 
+// Whether what is flat or disjoint is its own business.
+static bool asks_for_all(const Foreign *foreign) {
+  return (foreign->port.gives & TETLAP_MODEL_DISJOINT) != 0;
+}
+
 static bool has_ghosts(const void *self) {
-  return ((const Foreign *)self)->keeps_ghosts;
+  return !asks_for_all(self);
 }
 
 static bool has_centroid(const void *self) {
@@ -64,93 +62,21 @@ static bool wants_origins(const void *self) {
   return (((const Foreign *)self)->port.gives & TETLAP_MODEL_ORIGINS) != 0;
 }
 
-static double determinant_of(const double tet[12]) {
-  return fabs(vec3_det4(vec3_at(tet), vec3_at(tet + 3), vec3_at(tet + 6), vec3_at(tet + 9)));
-}
-
-static double smaller_volume(const double pair[OVERLAP_PAIR_SIZE]) {
-  const double a = determinant_of(pair), b = determinant_of(pair + 12);
-  return (a < b ? a : b) / 6;
-}
-
-// Whether what is flat or disjoint is its own business.
-static bool asks_for_all(const Foreign *foreign) {
-  return (foreign->port.gives & TETLAP_MODEL_DISJOINT) != 0;
-}
-
-// What clipping finds so much of, as a share of the smaller tetrahedron, does overlap.
-static const double CERTAIN_SHARE = 1e-6;
-
-// Why a pair is not asked for: its flag; 0: it is asked for. `clipped`: V by clipping, NAN: not known. It
-// only saves time: the separating axes of a pair that overlaps take ten times as long.
-static unsigned answer_unasked(const Foreign *foreign, const double pair[OVERLAP_PAIR_SIZE], double clipped) {
-  if (asks_for_all(foreign)) return 0;
-  const double most = smaller_volume(pair);
-  if (!(most > 0)) return OVERLAP_FLAT;
-  if (foreign->keeps_ghosts || clipped > CERTAIN_SHARE * most) return 0;
-  return overlap_separation_pair(pair, 0) >= 0 ? OVERLAP_DISJOINT : 0;
-}
-
-static Status reserve(Foreign *foreign, int count, unsigned wanted) {
-  const size_t size = (size_t)count;
-  if (!memory_reserve((void **)&foreign->rows, &foreign->row_capacity, size, sizeof(int)) ||
-      !memory_reserve((void **)&foreign->clipped, &foreign->clipped_capacity, size, sizeof(double)))
-    return status_no_memory("pairs for a model");
-  return overlap_foreign_request_reserve(&foreign->request, size, wanted);
-}
-
-static void start(Foreign *foreign) {
-  foreign->request.pairs = foreign->request.arrays[OVERLAP_FOREIGN_PAIRS];
-  foreign->request.count = 0;
-}
-
-static void append(Foreign *foreign, int row, const double pair[OVERLAP_PAIR_SIZE]) {
-  const size_t at = foreign->request.count++;
-  foreign->rows[at] = row;
-  memcpy(foreign->request.arrays[OVERLAP_FOREIGN_PAIRS] + OVERLAP_PAIR_SIZE * at, pair,
-         OVERLAP_PAIR_SIZE * sizeof *pair);
-}
-
-// Without a copy: the coordinates are the batch's own.
-static void take_all(Foreign *foreign, const OverlapBatch *batch) {
-  foreign->request.pairs = batch->pairs;
-  foreign->request.count = (size_t)batch->pair_count;
-  for (int i = 0; i < batch->pair_count; i++) foreign->rows[i] = i;
-}
-
-static void choose(Foreign *foreign, const OverlapBatch *batch) {
-  // Clipping refuses coordinates that the axes do not; then they decide alone.
-  const bool is_clipped =
-      !foreign->keeps_ghosts &&
-      overlap_clip_ops.eval_batch(NULL, &(OverlapBatch){.pair_count = batch->pair_count,
-                                                        .pairs = batch->pairs,
-                                                        .volume = foreign->clipped}) == STATUS_OK;
-  start(foreign);
-  for (int i = 0; i < batch->pair_count; i++) {
-    unsigned flags = 0;
-    const double *pair = batch->pairs + (size_t)i * OVERLAP_PAIR_SIZE;
-    OverlapAnswer answer = overlap_ops_answer(batch, i, &flags);
-    *answer.flags = answer_unasked(foreign, pair, is_clipped ? foreign->clipped[i] : NAN);
-    if (*answer.flags)
-      overlap_ops_write_nothing(&answer);
-    else
-      append(foreign, i, pair);
-  }
-}
-
-// Of the rows that are asked for: their numbers, `width` each.
-static void gather(const Foreign *foreign, int width, const double *from, double *to) {
-  for (size_t k = 0; k < foreign->request.count; k++)
-    for (int c = 0; c < width; c++) *to++ = from[(size_t)width * (size_t)foreign->rows[k] + (size_t)c];
+// Copies, but for a model that is asked for all: the caller's own.
+static void take(Foreign *foreign, int count, const double *pairs) {
+  double *copies = foreign->request.arrays[OVERLAP_FOREIGN_PAIRS];
+  foreign->request.count = (size_t)count;
+  foreign->request.pairs = asks_for_all(foreign) ? pairs : copies;
+  if (!asks_for_all(foreign))
+    memcpy(copies, pairs, OVERLAP_PAIR_SIZE * foreign->request.count * sizeof *pairs);
 }
 
 static void tell_origins(Foreign *foreign, const OverlapOrigins *origins) {
   OverlapForeignRequest *request = &foreign->request;
-  gather(foreign, 2, origins->rest, request->arrays[OVERLAP_FOREIGN_REST]);
-  for (size_t k = 0; k < 2 * request->count; k++) {
-    const size_t at = 2 * (size_t)foreign->rows[k / 2] + k % 2;
-    request->elements[k] = origins->elements[at], request->bodies[k] = origins->bodies[at];
-  }
+  const size_t count = 2 * request->count;
+  memcpy(request->arrays[OVERLAP_FOREIGN_REST], origins->rest, count * sizeof *origins->rest);
+  memcpy(request->elements, origins->elements, count * sizeof *origins->elements);
+  memcpy(request->bodies, origins->bodies, count * sizeof *origins->bodies);
 }
 
 static bool are_finite(int count, const double *numbers) {
@@ -164,20 +90,30 @@ static Status fail_not_finite(const Foreign *foreign, int pair, const char *what
                      pair, what);
 }
 
-// The model's answer for one of the pairs asked for, into the batch.
+// Infinite: it knows nothing of the pair.
+static Status give_doubt(const Foreign *foreign, const OverlapBatch *batch, size_t at, int i) {
+  batch->doubt[at] = foreign->request.arrays[OVERLAP_FOREIGN_DOUBT][at];
+  return batch->doubt[at] >= 0
+             ? STATUS_OK
+             : status_fail(STATUS_SOLVER, "overlap model '%s': pair %d: its doubt is %g, expected 0 or more",
+                           foreign->name, i, batch->doubt[at]);
+}
+
+// The model's answer for one pair, into the batch.
 static Status give(const Foreign *foreign, const OverlapBatch *batch, size_t at) {
-  const int i = foreign->rows[at];
+  const int i = batch->numbers ? batch->numbers[at] : (int)at;
   unsigned flags = 0;
-  OverlapAnswer answer = overlap_ops_answer(batch, i, &flags);
+  OverlapAnswer answer = overlap_ops_answer(batch, (int)at, &flags);
   double *const *arrays = foreign->request.arrays;
   const double volume = arrays[OVERLAP_FOREIGN_VOLUME][at];
   if (!isfinite(volume)) return fail_not_finite(foreign, i, "its volume");
+  if (batch->doubt) TRY(give_doubt(foreign, batch, at, i));
   *answer.flags = volume < 0 ? OVERLAP_UNSOUND : 0;
   if (!(volume > 0)) {
     overlap_ops_write_nothing(&answer);
     return STATUS_OK;
   }
-  if (volume > smaller_volume(batch->pairs + OVERLAP_PAIR_SIZE * (size_t)i) * (1 + 1e-9))
+  if (volume > overlap_sizes_smaller(batch->pairs + OVERLAP_PAIR_SIZE * at) * (1 + 1e-9))
     *answer.flags = OVERLAP_UNSOUND;
   *answer.volume = volume;
   if (answer.gradient) {
@@ -206,10 +142,11 @@ static Status eval_hessian(Foreign *foreign, const OverlapBatch *batch) {
     for (size_t k = 0; k < request->count; k++) by_gradient[SIZE * k + r] = 1;
     TRY(overlap_foreign_request_pull(request, &foreign->port, foreign->name, BY_GRADIENT));
     for (size_t k = 0; k < request->count; k++) {
-      const size_t i = (size_t)foreign->rows[k];
       const double *row = request->arrays[OVERLAP_FOREIGN_SLOPE] + SIZE * k;
-      if (!are_finite(SIZE, row)) return fail_not_finite(foreign, (int)i, "a second derivative of it");
-      if (batch->volume[i] > 0) memcpy(batch->hessian + SIZE * SIZE * i + SIZE * r, row, SIZE * sizeof *row);
+      if (!are_finite(SIZE, row))
+        return fail_not_finite(foreign, batch->numbers ? batch->numbers[k] : (int)k,
+                               "a second derivative of it");
+      if (batch->volume[k] > 0) memcpy(batch->hessian + SIZE * SIZE * k + SIZE * r, row, SIZE * sizeof *row);
     }
   }
   return STATUS_OK;
@@ -218,13 +155,10 @@ static Status eval_hessian(Foreign *foreign, const OverlapBatch *batch) {
 static Status eval(Foreign *foreign, const OverlapBatch *batch) {
   const bool tells = wants_origins(foreign) && batch->origins.elements;
   const unsigned wanted = PAIRS | VOLUME | (batch->gradient ? GRADIENT : 0) |
-                          (batch->centroid ? CENTROID : 0) | (tells ? REST : 0);
-  TRY(reserve(foreign, batch->pair_count, wanted));
-  if (asks_for_all(foreign))
-    take_all(foreign, batch);
-  else
-    choose(foreign, batch);
-  if (foreign->request.count == 0) return STATUS_OK;
+                          (batch->centroid ? CENTROID : 0) | (batch->doubt ? DOUBT : 0) | (tells ? REST : 0);
+  if (batch->pair_count == 0) return STATUS_OK;
+  TRY(overlap_foreign_request_reserve(&foreign->request, (size_t)batch->pair_count, wanted));
+  take(foreign, batch->pair_count, batch->pairs);
   if (tells) tell_origins(foreign, &batch->origins);
   TRY(overlap_foreign_request_ask(&foreign->request, &foreign->port, foreign->name, wanted));
   for (size_t k = 0; k < foreign->request.count; k++) TRY(give(foreign, batch, k));
@@ -251,9 +185,7 @@ static Status eval_all(Foreign *foreign, int count, const double *pairs, double 
   const size_t bytes = (size_t)count * sizeof(double);
   const unsigned wanted = PAIRS | VOLUME | 1u << array;
   TRY(overlap_foreign_request_reserve(request, (size_t)count, wanted));
-  memcpy(request->arrays[OVERLAP_FOREIGN_PAIRS], pairs, OVERLAP_PAIR_SIZE * bytes);
-  start(foreign);
-  request->count = (size_t)count;
+  take(foreign, count, pairs);
   TRY(overlap_foreign_request_ask(request, &foreign->port, foreign->name, wanted));
   memcpy(numbers, request->arrays[array], bytes);
   if (volumes) memcpy(volumes, request->arrays[OVERLAP_FOREIGN_VOLUME], bytes);
@@ -285,25 +217,20 @@ static Status pull(Foreign *foreign, const OverlapPull *asked) {
   enum { SIZE = OVERLAP_PAIR_SIZE };
   OverlapForeignRequest *request = &foreign->request;
   double **arrays = request->arrays;
+  const size_t count = (size_t)asked->pair_count, bytes = count * sizeof *asked->slope;
   const unsigned wanted = PAIRS | BY_VOLUME | (asked->by_centroid ? BY_CENTROID : 0) |
                           (asked->by_gradient ? BY_GRADIENT : 0) | SLOPE;
-  TRY(reserve(foreign, asked->pair_count, wanted));
-  memset(asked->slope, 0, (size_t)asked->pair_count * SIZE * sizeof *asked->slope);
-  start(foreign);
-  for (int i = 0; i < asked->pair_count; i++) {
-    const double *pair = asked->pairs + SIZE * (size_t)i;
-    if (!answer_unasked(foreign, pair, NAN)) append(foreign, i, pair);
-  }
-  if (request->count == 0) return STATUS_OK;
-  gather(foreign, 1, asked->by_volume, arrays[OVERLAP_FOREIGN_BY_VOLUME]);
-  if (asked->by_centroid) gather(foreign, 3, asked->by_centroid, arrays[OVERLAP_FOREIGN_BY_CENTROID]);
-  if (asked->by_gradient) gather(foreign, SIZE, asked->by_gradient, arrays[OVERLAP_FOREIGN_BY_GRADIENT]);
+  if (count == 0) return STATUS_OK;
+  TRY(overlap_foreign_request_reserve(request, count, wanted));
+  take(foreign, asked->pair_count, asked->pairs);
+  memcpy(arrays[OVERLAP_FOREIGN_BY_VOLUME], asked->by_volume, bytes);
+  if (asked->by_centroid) memcpy(arrays[OVERLAP_FOREIGN_BY_CENTROID], asked->by_centroid, 3 * bytes);
+  if (asked->by_gradient) memcpy(arrays[OVERLAP_FOREIGN_BY_GRADIENT], asked->by_gradient, SIZE * bytes);
   TRY(overlap_foreign_request_pull(request, &foreign->port, foreign->name, wanted));
-  for (size_t k = 0; k < request->count; k++) {
-    const double *slope = arrays[OVERLAP_FOREIGN_SLOPE] + SIZE * k;
-    if (!are_finite(SIZE, slope)) return fail_not_finite(foreign, foreign->rows[k], "its pull-back");
-    memcpy(asked->slope + SIZE * (size_t)foreign->rows[k], slope, SIZE * sizeof *slope);
-  }
+  for (size_t k = 0; k < count; k++)
+    if (!are_finite(SIZE, arrays[OVERLAP_FOREIGN_SLOPE] + SIZE * k))
+      return fail_not_finite(foreign, (int)k, "its pull-back");
+  memcpy(asked->slope, arrays[OVERLAP_FOREIGN_SLOPE], SIZE * bytes);
   return STATUS_OK;
 }
 
@@ -347,16 +274,11 @@ static Status open_port(OverlapForeignPort *port, const char *word) {
   return status_fail(STATUS_INPUT, "%s: names no model of yours", word);
 }
 
-Status overlap_foreign_create(void **self, const OverlapOps **ops, const char *word,
-                              const OverlapOptions *options) {
-  if (options && options->ghosts == OVERLAP_GHOSTS_FADE)
-    return status_fail(STATUS_INPUT, "%s: ghosts: fade is for networks of tetlap; write `cut` or `keep`",
-                       word);
+Status overlap_foreign_create(void **self, const OverlapOps **ops, const char *word) {
   Foreign *foreign = memory_zeroed(1, sizeof *foreign);
   if (!foreign) return status_no_memory("a model of yours");
   pthread_mutex_init(&foreign->lock, NULL);
   snprintf(foreign->name, sizeof foreign->name, "%s", word);
-  foreign->keeps_ghosts = options && options->ghosts == OVERLAP_GHOSTS_KEEP;
   foreign->ops = standard;
   foreign->ops.name = foreign->name;
   Status status = open_port(&foreign->port, word);
@@ -365,12 +287,13 @@ Status overlap_foreign_create(void **self, const OverlapOps **ops, const char *w
     return status;
   }
   if (foreign->port.gives & TETLAP_MODEL_LOGIT) foreign->ops.eval_logits = eval_logits;
-  if (foreign->port.gives & TETLAP_MODEL_DOUBT) foreign->ops.eval_bounds = eval_bounds;
+  foreign->ops.gives_doubt = (foreign->port.gives & TETLAP_MODEL_DOUBT) != 0;
+  if (foreign->ops.gives_doubt) foreign->ops.eval_bounds = eval_bounds;
   if (foreign->port.pull) foreign->ops.eval_pull = eval_pull;
   *self = foreign, *ops = &foreign->ops;
   return STATUS_OK;
 }
 
 Status overlap_foreign_hand_on(const char *word) {
-  return overlap_foreign_process_hand_on(word);
+  return overlap_foreign_process_hand_on(overlap_source_model(word));
 }

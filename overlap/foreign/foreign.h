@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A model of the user's as an overlap model: what every model owes the program, round what a port gives.
 //
-// - A pair with a flat tetrahedron, and one whose tetrahedra share no volume, is answered by 0, unasked. The
-//   second by the separating axis theorem (overlap/separation.h), where clipping finds no volume; not where
-//   the options keep ghosts. Neither where the model says that its V is 0 there as it stands
-//   (TETLAP_MODEL_DISJOINT).
 // - V below 0 becomes 0, its gradient too, and is flagged OVERLAP_UNSOUND; so is V above the smaller
 //   tetrahedron, which stays.
 // - A number that is not finite is an error that names the pair; so is one written beyond the end of an
@@ -15,13 +11,10 @@
 #define TETLAP_OVERLAP_FOREIGN_FOREIGN_H
 
 #include "overlap/ops.h"
-#include "overlap/options.h"
 
 // Opens the model that a word names (overlap/source.h). `*ops` belongs to `*self` and ends with it, by its
-// `destroy`. STATUS_INPUT, STATUS_IO: as library.h and process.h have it, with the word; options->ghosts is
-// `fade`, which is for networks of ours.
-Status overlap_foreign_create(void **self, const OverlapOps **ops, const char *word,
-                              const OverlapOptions *options);
+// `destroy`. STATUS_INPUT, STATUS_IO: as library.h and process.h have it, with the word.
+Status overlap_foreign_create(void **self, const OverlapOps **ops, const char *word);
 
 // Programs that this one starts may open the `channel:` word, too, one after the other. STATUS_INPUT: the
 // descriptors are not there.

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "overlap/blend.h"
 #include "overlap/clip/clip.h"
 #include "overlap/geo/hessian.h"
 
@@ -92,32 +93,6 @@ typedef struct Blend {
   double difference, gradient_difference[SIZE];        // clip − network
 } Blend;
 
-static void blend_gradient(const Blend *blend, double *gradient) {
-  for (int i = 0; i < SIZE; i++)
-    gradient[i] +=
-        blend->share * blend->gradient_difference[i] + blend->difference * blend->share_gradient[i];
-}
-
-static void blend_hessian(const Blend *blend, double *hessian) {
-  for (int i = 0; i < SIZE; i++)
-    for (int j = i; j < SIZE; j++) {
-      int at = i * SIZE + j;
-      hessian[at] += blend->share * (blend->hessian[at] - hessian[at]) +
-                     blend->share_gradient[i] * blend->gradient_difference[j] +
-                     blend->gradient_difference[i] * blend->share_gradient[j] +
-                     blend->difference * blend->share_hessian[at];
-      hessian[j * SIZE + i] = hessian[at];
-    }
-}
-
-void overlap_geo_coplanar_mix(double share, double clip_volume, const double clip_centroid[3], double *volume,
-                              double *centroid) {
-  *volume += share * (clip_volume - *volume);
-  double part = *volume > 0 ? share * clip_volume / *volume : 0;
-  for (int c = 0; c < 3 && centroid; c++)
-    centroid[c] = *volume > 0 ? centroid[c] + part * (clip_centroid[c] - centroid[c]) : 0;
-}
-
 // Turns the network's gradient and Hessian to the blend's; either may be NULL. The blend has `part` of w.
 static void blend_derivatives(const OverlapGeoFrame *frame, const OverlapGeoCoplanar *coplanar, double part,
                               Blend *blend, double *gradient, double *hessian) {
@@ -126,8 +101,8 @@ static void blend_derivatives(const OverlapGeoFrame *frame, const OverlapGeoCopl
   overlap_geo_coplanar_pull(frame, coplanar, blend->share_gradient, hessian ? blend->share_hessian : NULL);
   for (int i = 0; i < SIZE; i++) blend->share_gradient[i] *= part;
   for (int i = 0; i < SIZE * SIZE && hessian; i++) blend->share_hessian[i] *= part;
-  blend_gradient(blend, gradient);
-  if (hessian) blend_hessian(blend, hessian);
+  overlap_blend_turn(&(OverlapBlendShare){blend->share, blend->share_gradient, blend->share_hessian},
+                     blend->difference, blend->gradient_difference, blend->hessian, gradient, hessian);
 }
 
 Status overlap_geo_coplanar_blend(const OverlapGeoFrame *frame, const double pair[24], double *volume,
@@ -146,7 +121,7 @@ Status overlap_geo_coplanar_blend(const OverlapGeoFrame *frame, const double pai
                                                   .centroid = centroid ? clip_centroid : NULL,
                                                   .flags = &clip_flags}));
   blend.difference = blend.volume - *volume;
-  overlap_geo_coplanar_mix(blend.share, blend.volume, clip_centroid, volume, centroid);
+  overlap_blend_move(blend.share, blend.volume, clip_centroid, volume, centroid);
   if (flags) *flags |= OVERLAP_BLENDED;
   blend_derivatives(frame, &coplanar, 1, &blend, gradient, hessian);
   return STATUS_OK;

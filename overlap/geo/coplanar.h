@@ -33,10 +33,6 @@ void overlap_geo_coplanar_bend(const OverlapGeoCoplanar *coplanar, const GeoMatr
 void overlap_geo_coplanar_pull(const OverlapGeoFrame *frame, const OverlapGeoCoplanar *coplanar,
                                double gradient[24], double *hessian);
 
-// The blend of volume and, unless NULL, centroid with clip's: V x̄ is blended as V is.
-void overlap_geo_coplanar_mix(double share, double clip_volume, const double clip_centroid[3], double *volume,
-                              double *centroid);
-
 // If the pair has a share, turns volume, gradient, hessian (24 × 24) and centroid of the network, all but the
 // first NULL if not wanted, to the blend and adds OVERLAP_BLENDED to the flags (may
 // be NULL). A Hessian needs the gradient.

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "overlap/blend.h"
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
 #include "overlap/geo/coplanar.h"
@@ -213,7 +214,7 @@ static Status blend_waiting(const Waiting *waiting, bool wants_centroid) {
                                                         .centroid = wants_centroid ? centroid : NULL}));
   for (int i = 0; i < waiting->count; i++) {
     Place place = waiting->place[i];
-    overlap_geo_coplanar_mix(waiting->share[i], volume[i], centroid + 3 * i, place.volume, place.centroid);
+    overlap_blend_move(waiting->share[i], volume[i], centroid + 3 * i, place.volume, place.centroid);
     if (place.flags) *place.flags |= OVERLAP_BLENDED;
     if (place.bound) *place.bound *= 1 - OVERLAP_GEO_COPLANAR_FADE * waiting->share[i];
   }

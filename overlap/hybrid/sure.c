@@ -7,7 +7,6 @@
 #include "base/memory.h"
 #include "overlap/blend.h"
 #include "overlap/clip/clip.h"
-#include "overlap/geo/coplanar.h"
 #include "overlap/geo/model.h"
 #include "overlap/geo/slopes/slopes.h"
 #include "overlap/hybrid/share.h"
@@ -98,8 +97,8 @@ static Status mix_waiting(const Waiting *waiting, const OverlapBatch *batch) {
                                                         .volume = volume,
                                                         .centroid = batch->centroid ? centroid : NULL}));
   for (int w = 0; w < waiting->count; w++)
-    overlap_geo_coplanar_mix(waiting->share[w], volume[w], centroid + 3 * w, batch->volume + waiting->at[w],
-                             batch->centroid ? batch->centroid + 3 * (ptrdiff_t)waiting->at[w] : NULL);
+    overlap_blend_move(waiting->share[w], volume[w], centroid + 3 * w, batch->volume + waiting->at[w],
+                       batch->centroid ? batch->centroid + 3 * (ptrdiff_t)waiting->at[w] : NULL);
   return STATUS_OK;
 }
 
@@ -127,23 +126,6 @@ static Status eval_values(const Sure *sure, const OverlapBatch *batch) {
 }
 
 // ---- With derivatives.
-
-// ∇V = (1 − c) ∇V_net + c ∇V_clip + (V_clip − V_net) ∇c, and ∇²V, in place of the network's; `gradient` only
-// if not NULL.
-static void mix_derivatives(const OverlapHybridSigns *signs, double share, const OverlapAnswer *clip,
-                            const double share_gradient[SIZE], const double *share_hessian, double *gradient,
-                            double *hessian) {
-  double apart[SIZE], difference = *clip->volume - signs->volume;
-  for (int i = 0; i < SIZE; i++) apart[i] = clip->gradient[i] - signs->volume_gradient[i];
-  for (int i = 0; i < SIZE && hessian; i++)
-    for (int j = i; j < SIZE; j++) {
-      int at = SIZE * i + j;
-      hessian[at] += share * (clip->hessian[at] - hessian[at]) + share_gradient[i] * apart[j] +
-                     apart[i] * share_gradient[j] + difference * share_hessian[at];
-      hessian[SIZE * j + i] = hessian[at];
-    }
-  for (int i = 0; i < SIZE && gradient; i++) gradient[i] += share * apart[i] + difference * share_gradient[i];
-}
 
 // What both networks say of a few pairs.
 typedef struct Told {
@@ -182,9 +164,12 @@ static Status mix_pair(const OverlapBatch *batch, const OverlapHybridSigns *sign
                         .centroid = batch->centroid ? centroid : NULL,
                         .flags = &flags};
   TRY(overlap_clip_ops.eval_pair(NULL, signs->pair, &clip));
-  mix_derivatives(signs, share, &clip, share_gradient, share_hessian, gradient, hessian);
-  overlap_geo_coplanar_mix(share, volume, centroid, batch->volume + i,
-                           batch->centroid ? batch->centroid + 3 * (ptrdiff_t)i : NULL);
+  double apart[SIZE];
+  for (int k = 0; k < SIZE; k++) apart[k] = clip_gradient[k] - signs->volume_gradient[k];
+  overlap_blend_turn(&(OverlapBlendShare){share, share_gradient, share_hessian}, volume - signs->volume,
+                     apart, clip_hessian, gradient, hessian);
+  overlap_blend_move(share, volume, centroid, batch->volume + i,
+                     batch->centroid ? batch->centroid + 3 * (ptrdiff_t)i : NULL);
   return STATUS_OK;
 }
 

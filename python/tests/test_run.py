@@ -75,6 +75,19 @@ class RunsOfTheProgram(unittest.TestCase):
         self.assertEqual(json.loads(Path(ours.directory, "summary.json").read_text())["overlap"], "clip")
         np.testing.assert_array_equal(ours.frames[-1].points, own.frames[-1].points)
 
+    def test_a_function_of_volumes_alone_runs_with_a_wrapper(self):
+        def volumes(pairs):
+            return tetlap.overlap(pairs).volume
+
+        ours = tetlap.run(TWO, self.directory, overlap=tetlap.wrapped("placed=", volumes))
+        self.assertEqual(json.loads(Path(ours.directory, "summary.json").read_text())["overlap"], "placed=volumes")
+        own = tetlap.run(TWO, self.directory.with_name("own"))
+        np.testing.assert_array_equal(ours.frames[-1].points, own.frames[-1].points)
+        with self.assertRaisesRegex(ValueError, "no wrappers"):
+            tetlap.wrapped("placed", volumes)
+        with self.assertRaisesRegex(TypeError, "both=clip as one text"):
+            tetlap.wrapped("both=", "clip")
+
     def test_what_the_function_raises_is_the_cause(self):
         def broken(pairs):
             if len(pairs) > 1:

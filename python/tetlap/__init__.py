@@ -32,6 +32,7 @@ Models of overlap are measured on labelled pairs:
 
     load_pairs, evaluate        labelled pairs as arrays; how well a model, yours too, answers them
     read_weights, write_weights networks of tetlap's as arrays, to and from PyTorch
+    wrapped                     a function with wrappers round it, as both= and fade= before a name
     verdict                     what a model, yours too, is fit for: to detect, for forces, to drive a motion
 
 `tetlap.__version__` is the library's. Units are SI. Arrays are float64 of NumPy; shapes stand in parentheses, units in brackets. Wrong arguments raise TypeError or ValueError;
@@ -53,11 +54,12 @@ from ._table import Failure, Results
 from ._verdict import Verdict, verdict
 from ._volumes import Flag, MeshPairs, Overlap, mesh_overlap, mesh_pairs, overlap
 from ._weights import Weights, read_weights, write_weights
+from ._wrapped import wrapped
 
 __all__ = ["Body", "Compared", "Comparison", "Contact", "Drive", "Error", "Failure", "Flag", "Frame", "Frames", "Loads", "MeshPairs",
            "Model", "Overlap", "Poses", "Results", "Run", "RunError", "Simulation", "State", "UnknownNameError", "Verdict", "Weights",
            "compare",
-           "evaluate", "gradient", "load_pairs", "map", "mesh_overlap", "mesh_pairs", "models", "overlap", "poses", "read", "read_weights", "run", "verdict", "write_weights"]
+           "evaluate", "gradient", "load_pairs", "map", "mesh_overlap", "mesh_pairs", "models", "overlap", "poses", "read", "read_weights", "run", "verdict", "wrapped", "write_weights"]
 
 
 def __getattr__(name):

@@ -27,6 +27,7 @@ from ._run import _INTERRUPTED, _Folder
 from ._scene import OverlapModel, Scene, Settings, override_texts, scene_text, with_absolute_paths
 from ._simulation import Simulation
 from ._table import Failure, Results, Table, as_row
+from ._wrapped import Wrapped
 
 _log = logging.getLogger("tetlap")
 _COMMIT_S = 1.0  # what a kill may cost, and how often progress is told to a terminal
@@ -53,6 +54,8 @@ def _function_text(function):
     """What says that a function is the same: its source, or its code where there is no source."""
     if isinstance(function, functools.partial):
         return f"{_function_text(function.func)} {_plain_texts([*function.args, function.keywords])}"
+    if isinstance(function, Wrapped):
+        return f"{function.words} {_function_text(function.model)}"
     if not inspect.isroutine(function) and not inspect.isclass(function):
         function = type(function)
     try:

@@ -20,6 +20,7 @@ from . import _locate, serve
 from ._errors import RunError
 from ._results import Frame, Frames, Run
 from ._scene import OverlapModel, Scene, Settings, override_texts, scene_text, with_absolute_paths
+from ._wrapped import Wrapped
 
 _log = logging.getLogger("tetlap")
 _POLL_S = 0.02
@@ -98,6 +99,9 @@ class _Server(threading.Thread):
 
     def __init__(self, function, name=None):
         super().__init__(daemon=True)
+        self._wrappers = ""
+        if isinstance(function, Wrapped):
+            self._wrappers, function = function.words, function.model
         name = name or getattr(function, "__name__", type(function).__name__)
         self._function, self._name, self.error = function, "".join(c for c in name if c.isalnum() or c in "_-.") or "model", None
         ours, theirs = socket.socketpair()
@@ -108,7 +112,7 @@ class _Server(threading.Thread):
 
     @property
     def word(self):
-        return f"channel:{self.descriptors[0]}:{self.descriptors[1]}:{self._name}"
+        return f"{self._wrappers}channel:{self.descriptors[0]}:{self.descriptors[1]}:{self._name}"
 
     def run(self):
         try:

@@ -64,8 +64,9 @@ def _solid_with_paths(solid):
     return solid
 
 
-#: hybrid=NET.safetensors, MINE.so, MINE.py:name: an overlap model that is a file, and not a name or a command
-_MODEL_FILE = re.compile(r"(hybrid=)?(.*(?:\.safetensors|\.so|\.py(?=:)))(:.*)?", re.S)
+#: What stands before a model, as in both= and fade:.05=, and NET.safetensors, MINE.so, MINE.py:name: a model that is a file
+_WRAPPERS = re.compile(r"(?:(?!exec:|channel:)[a-z-]+(?::[-+.\de]+)?=)*")
+_MODEL_FILE = re.compile(r"(?!exec:)(.*(?:\.safetensors|\.so|\.py(?=:)))(:.*)?", re.S)
 
 
 def _model_with_path(section, key):
@@ -73,8 +74,11 @@ def _model_with_path(section, key):
     value = section.get(key)
     if isinstance(value, os.PathLike):
         return {**section, key: _from_here(value)}
-    file = _MODEL_FILE.fullmatch(value) if isinstance(value, str) and not value.startswith("exec:") else None
-    return {**section, key: (file[1] or "") + _from_here(file[2]) + (file[3] or "")} if file else section
+    if not isinstance(value, str):
+        return section
+    begin = _WRAPPERS.match(value).end()
+    file = _MODEL_FILE.fullmatch(value, begin)
+    return {**section, key: value[:begin] + _from_here(file[1]) + (file[2] or "")} if file else section
 
 
 def _start_with_path(start):
@@ -95,8 +99,6 @@ def with_absolute_paths(scene):
     contact = result.get("contact")
     if isinstance(contact, Mapping):
         contact = _model_with_path(contact, "overlap")
-        if isinstance(contact.get("net"), Mapping):
-            contact = {**contact, "net": _model_with_path(contact["net"], "weights")}
         result["contact"] = contact
     if "start" in result:
         result["start"] = _start_with_path(result["start"])

@@ -55,6 +55,12 @@ START_TEST(a_hybrid_is_called_by_its_network) {
 }
 END_TEST
 
+START_TEST(wrappers_stay_before_the_name) {
+  check(4, (const char *[]){"/a/m.so", "both=/a/m.so", "fade:.1=both=clip", "both=exec:/x/serve --fast"},
+        (const char *[]){"m", "both=m", "fade:.1=both=clip", "both=serve"});
+}
+END_TEST
+
 START_TEST(a_model_is_not_named_twice) {
   check_refused("clip", "clip", "'clip' is named twice");
   check_refused("a/net.safetensors", "./b/../a//net.safetensors", "a/net.safetensors");
@@ -79,6 +85,7 @@ int main(void) {
   tcase_add_test(test_case, a_file_is_called_by_the_shortest_end_of_its_path_that_no_other_has);
   tcase_add_test(test_case, a_file_is_never_called_like_a_model_of_the_program);
   tcase_add_test(test_case, a_hybrid_is_called_by_its_network);
+  tcase_add_test(test_case, wrappers_stay_before_the_name);
   tcase_add_test(test_case, a_model_is_not_named_twice);
   tcase_add_test(test_case, the_path_of_a_file_is_absolute);
   return suite_run("model_names", test_case, 10);

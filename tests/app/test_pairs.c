@@ -17,7 +17,7 @@
 #include "base/files/file.h"
 #include "base/memory.h"
 #include "base/random.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 enum { MOST_TEXT = 1 << 16, PAIRS = 300 };
 
@@ -155,7 +155,7 @@ static void expect_volumes(const char *path, const double *volumes, double toler
   ck_assert_ok(app_pairs_reader_open(&reader, path, false));
   ck_assert_ok(app_pairs_reader_next(&reader));
   ck_assert_int_eq(reader.block.count, PAIRS);
-  ck_assert_ok(overlap_model_create(&model, "exact"));
+  ck_assert_ok(overlap_models_create(&model, "exact"));
   ck_assert_ok(overlap_model_eval(
       &model, &(OverlapBatch){.pair_count = PAIRS, .pairs = reader.block.coordinates, .volume = found}));
   overlap_model_destroy(&model);
@@ -171,7 +171,7 @@ START_TEST(every_form_of_the_same_pairs_gives_the_same_volumes) {
   double sum = 0;
   OverlapModel model;
   fill(pairs);
-  ck_assert_ok(overlap_model_create(&model, "exact"));
+  ck_assert_ok(overlap_models_create(&model, "exact"));
   ck_assert_ok(overlap_model_eval(
       &model, &(OverlapBatch){.pair_count = PAIRS, .pairs = &pairs[0][0], .volume = volumes}));
   overlap_model_destroy(&model);
@@ -226,7 +226,7 @@ START_TEST(hdf5_files_of_others_are_read_by_their_array) {
   fill(pairs);
   for (int i = 0; i < PAIRS; i++)
     for (int k = 0; k < 24; k++) narrow[i][k] = (float)pairs[i][k];
-  ck_assert_ok(overlap_model_create(&model, "exact"));
+  ck_assert_ok(overlap_models_create(&model, "exact"));
   ck_assert_ok(overlap_model_eval(
       &model, &(OverlapBatch){.pair_count = PAIRS, .pairs = &pairs[0][0], .volume = volumes}));
   overlap_model_destroy(&model);
@@ -471,7 +471,7 @@ START_TEST(eval_takes_an_imported_set_and_right_labels_are_not_doubted) {
   OverlapModel model;
   fill(pairs);
   for (int i = 0; i < 20; i++) memcpy(&pairs[i][12], &pairs[i][0], 3 * sizeof(double)); // a common vertex
-  ck_assert_ok(overlap_model_create(&model, "exact"));
+  ck_assert_ok(overlap_models_create(&model, "exact"));
   ck_assert_ok(overlap_model_eval(&model, &(OverlapBatch){.pair_count = PAIRS,
                                                           .pairs = &pairs[0][0],
                                                           .volume = volumes,
@@ -488,8 +488,7 @@ START_TEST(eval_takes_an_imported_set_and_right_labels_are_not_doubted) {
   ck_assert_int_eq(run("eval clip rows.h5 --json", text), 0);
   ck_assert_ptr_nonnull(strstr(text, "\"mae\""));
   ck_assert_int_eq(run("eval geo rows.h5", text), 0);
-  ck_assert_int_eq(run("eval hybrid rows.h5 --json --doubt 0.01", text), 0);
-  ck_assert_ptr_nonnull(strstr(text, "\"doubt\": 0.01"));
+  ck_assert_int_eq(run("eval hybrid:.01=geo-small rows.h5 --json", text), 0);
   ck_assert_ptr_nonnull(strstr(text, "\"bound_coverage\": 0."));
   ck_assert_ptr_nonnull(strstr(text, "\"handed_on_in_part\": 0."));
   ck_assert_int_eq(run("eval hybrid rows.h5", text), 0);

@@ -50,8 +50,7 @@ START_TEST(an_option_that_is_no_number_in_its_range_is_a_usage_error) {
   ck_assert_int_eq(exit_code_of("run scene.yaml --threads 2x"), 64);
   ck_assert_int_eq(exit_code_of("train plan.yaml --threads 0"), 64);
   ck_assert_int_eq(exit_code_of("eval clip --paths 99999999999"), 64);
-  ck_assert_int_eq(exit_code_of("eval hybrid --law scene --count 100 --doubt 0"), 64);
-  ck_assert_int_eq(exit_code_of("eval geo --law scene --count 100 --doubt 0.01"), 64);
+  ck_assert_int_eq(exit_code_of("eval hybrid:0=geo --law scene --count 100"), 64);
   ck_assert_int_eq(exit_code_of("datagen --list --swap nan"), 64);
   ck_assert_int_eq(exit_code_of("datagen --list --seed -1"), 64);
   ck_assert_int_eq(exit_code_of("datagen --list --seed 18446744073709551615"), 0);

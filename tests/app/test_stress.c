@@ -12,7 +12,7 @@
 #include "app/stress/stress.h"
 #include "base/memory.h"
 #include "datagen/hard.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 static void run(AppStress *stress, const AppStressOptions *options) {
   Status status = app_stress_all_run(options, stress);
@@ -35,10 +35,10 @@ static void expect_no_failure(const AppStress *stress) {
 START_TEST(every_class_of_pairs_holds_with_every_model) {
   AppStress stress;
   int count;
-  overlap_model_list(&count);
+  overlap_models_list(&count);
   char all[512] = "";
   for (int m = 0; m < count; m++) {
-    const char *name = overlap_model_list(&count)[m]->name;
+    const char *name = overlap_models_list(&count)[m]->name;
     if (strcmp(name, "cgal") == 0) continue; // milliseconds a pair: the long run has it
     strcat(strcat(all, all[0] ? "," : ""), name);
   }

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "overlap/models.h"
 
 // Overlap models see bodies shifted by less than this (contact/search/layout.h) [m].
 static const double NUDGE = 2e-9;
@@ -34,7 +35,7 @@ static void prepare(Fixture *f) {
   f->rest = blocks_copy(&f->blocks);
   f->still = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(f->still);
-  ck_assert_ok(overlap_model_create(&f->model, "clip"));
+  ck_assert_ok(overlap_models_create(&f->model, "clip"));
 }
 
 // Two irregular blocks, the upper one pressed 0.3 elements into the lower.

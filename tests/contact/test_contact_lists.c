@@ -8,6 +8,7 @@
 
 #include "base/vec3.h"
 #include "contact/search/near.h"
+#include "overlap/models.h"
 
 typedef struct Fixture {
   Blocks blocks;
@@ -26,7 +27,7 @@ static void start(Fixture *f) {
   f->rest = blocks_copy(&f->blocks);
   f->velocities = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(f->velocities);
-  ck_assert_ok(overlap_model_create(&f->model, "clip"));
+  ck_assert_ok(overlap_models_create(&f->model, "clip"));
   f->def = blocks_def(&f->blocks, f->rest, &f->model);
   ck_assert_ok(contact_system_create(&f->system, &f->def));
   update(f, 0, f->blocks.x);

@@ -7,6 +7,7 @@
 #include "base/vec3.h"
 #include "contact/passage.h"
 #include "contact/surface/middle.h"
+#include "overlap/models.h"
 
 typedef struct Scene {
   Blocks blocks;
@@ -23,7 +24,7 @@ static void start(Scene *scene) {
   scene->rest = blocks_copy(&scene->blocks);
   scene->still = calloc(3 * (size_t)scene->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(scene->still);
-  ck_assert_ok(overlap_model_create(&scene->model, "clip"));
+  ck_assert_ok(overlap_models_create(&scene->model, "clip"));
   ContactSystemDef def = blocks_def(&scene->blocks, scene->rest, &scene->model);
   def.potential = CONTACT_POTENTIAL_FIELD;
   def.shapes = &scene->shape, def.shape_count = scene->shape_count;

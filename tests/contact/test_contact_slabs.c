@@ -14,6 +14,8 @@
 
 #include <stdio.h>
 
+#include "overlap/models.h"
+
 static const double KAPPA = 1000;
 enum { LOWER_CELLS = 12, UPPER_WIDTH = 9, LAYERS = 2, SLIDES = 10 };
 
@@ -42,7 +44,7 @@ static void make(Slabs *slabs, ContactPotential potential, double ratio, double 
   slabs->rest = blocks_copy(&slabs->blocks);
   slabs->velocities = calloc(3 * (size_t)slabs->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(slabs->velocities);
-  ck_assert_ok(overlap_model_create(&slabs->model, "clip"));
+  ck_assert_ok(overlap_models_create(&slabs->model, "clip"));
   ContactSystemDef def = blocks_def(&slabs->blocks, slabs->rest, &slabs->model);
   def.stiffness = KAPPA;
   def.potential = potential;
@@ -178,7 +180,7 @@ START_TEST(models_agree_where_meshes_are_aligned) {
   make(&slabs, CONTACT_POTENTIAL_NODAL, 1, 0.3, true);
   OverlapModel exact;
   ContactAudit audit;
-  ck_assert_ok(overlap_model_create(&exact, "exact"));
+  ck_assert_ok(overlap_models_create(&exact, "exact"));
   ck_assert_ok(contact_system_update(slabs.system, 0, slabs.blocks.x, slabs.velocities, 0.01, NULL));
   ck_assert_ok(contact_system_audit(slabs.system, 0, slabs.blocks.x, &slabs.model, &exact, &audit));
   ck_assert_int_gt(audit.pair_count, 1000);

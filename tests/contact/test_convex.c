@@ -8,7 +8,7 @@
 #include "base/vec3.h"
 #include "contact/shape/convex.h"
 #include "contact/shape/halfspace.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 static const double HALF[3] = {0.5, 0.4, 0.3};
 
@@ -81,7 +81,7 @@ START_TEST(a_box_is_the_sum_of_its_tetrahedra_as_the_exact_model_sees_them) {
   static const int paths[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   ContactConvex convex = solid(0);
   OverlapModel exact;
-  ck_assert_ok(overlap_model_create(&exact, "exact"));
+  ck_assert_ok(overlap_models_create(&exact, "exact"));
   Random random = random_seeded(3, 0);
   int overlapping = 0;
   for (int trial = 0; trial < 300; trial++) {

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/search/layout.h"
+#include "overlap/models.h"
 #include "overlap/separation.h"
 
 // Overlap models see vertices shifted by less than this (contact/search/layout.h) [m].
@@ -22,7 +23,7 @@ typedef struct Fixture {
 static Fixture *empty_fixture(void) {
   Fixture *f = calloc(1, sizeof *f);
   ck_assert_ptr_nonnull(f);
-  ck_assert_ok(overlap_model_create(&f->model, "clip"));
+  ck_assert_ok(overlap_models_create(&f->model, "clip"));
   return f;
 }
 

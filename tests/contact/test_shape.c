@@ -7,6 +7,7 @@
 #include "base/vec3.h"
 #include "contact/shape/convex.h"
 #include "contact/shape/shape.h"
+#include "overlap/models.h"
 
 typedef struct Fixture {
   Blocks blocks;
@@ -25,7 +26,7 @@ static Fixture *block_on(ContactShape shape) {
   f->rest = blocks_copy(&f->blocks);
   f->still = calloc(3 * (size_t)f->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(f->still);
-  ck_assert_ok(overlap_model_create(&f->model, "clip"));
+  ck_assert_ok(overlap_models_create(&f->model, "clip"));
   ContactSystemDef def = blocks_def(&f->blocks, f->rest, &f->model);
   def.shapes = &f->shape, def.shape_count = 1, def.margin = 0.5;
   ck_assert_ok(contact_system_create(&f->system, &def));

@@ -13,6 +13,7 @@
 #include "contact/system.h"
 #include "evaluated.h"
 #include "fem/mesh/mesh.h"
+#include "overlap/models.h"
 #include "product.h"
 #include "suite.h"
 
@@ -303,7 +304,7 @@ static void press_domes(Scene *scene, const char *model, int level) {
     double *x = scene->x + 3 * v;
     x[0] += 0.02 * sin(x[1]), x[1] += 0.01 * x[2], x[2] += 0.015 * sin(2 * x[0]);
   }
-  ck_assert_ok(overlap_model_create(&scene->model, model));
+  ck_assert_ok(overlap_models_create(&scene->model, model));
   ContactSystemDef def = {.vertex_count = scene->vertex_count,
                           .rest = scene->rest,
                           .tets = (const int(*)[4])scene->tets,

@@ -10,6 +10,7 @@
 #include "contact/system.h"
 #include "curved.h"
 #include "evaluated.h"
+#include "overlap/models.h"
 #include "product.h"
 
 static const double STIFFNESS = 1000;
@@ -64,7 +65,7 @@ static void start(Scene *scene, const char *model, bool has_floor) {
   scene->x = memcpy(grown(NULL, n * sizeof(double)), scene->rest, n * sizeof(double));
   scene->still = calloc(n, sizeof(double));
   ck_assert_ptr_nonnull(scene->still);
-  ck_assert_ok(overlap_model_create(&scene->model, model));
+  ck_assert_ok(overlap_models_create(&scene->model, model));
   scene->floor = (ContactShape){.name = "floor", .normal = {0, 0, 1}};
   ContactSystemDef def = {.vertex_count = scene->vertex_count,
                           .rest = scene->rest,

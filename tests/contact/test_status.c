@@ -4,6 +4,7 @@
 
 #include "blocks.h"
 #include "contact/status.h"
+#include "overlap/models.h"
 
 // Says V = 1 m³ of every pair: `claims` 1, or of none.
 static Status eval_claim(const void *self, const double pair[24], const OverlapAnswer *answer) {
@@ -42,7 +43,7 @@ typedef struct Stack {
 // Two cubes of 2 × 2 × 2 cells of 1 m; the upper one begins `height` above the lower one's top.
 static void build(Stack *stack, double height, const OverlapModel *model) {
   *stack = (Stack){0};
-  ck_assert_ok(overlap_model_create(&stack->exact, "exact"));
+  ck_assert_ok(overlap_models_create(&stack->exact, "exact"));
   blocks_add(&stack->blocks, &(BlockDef){.cell = {1, 1, 1}, .cells = {2, 2, 2}});
   blocks_add(&stack->blocks,
              &(BlockDef){.corner = {0.3, 0.4, 2 + height}, .cell = {1, 1, 1}, .cells = {2, 2, 2}});

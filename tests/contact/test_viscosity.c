@@ -8,6 +8,7 @@
 #include "contact/friction/viscosity.h"
 #include "contact/search/layout.h"
 #include "evaluated.h"
+#include "overlap/models.h"
 
 static const double ETA = 70; // [Pa s/m²]
 
@@ -23,7 +24,7 @@ typedef struct Fixture {
 static Fixture *empty_fixture(void) {
   Fixture *f = calloc(1, sizeof *f);
   ck_assert_ptr_nonnull(f);
-  ck_assert_ok(overlap_model_create(&f->model, "clip"));
+  ck_assert_ok(overlap_models_create(&f->model, "clip"));
   return f;
 }
 

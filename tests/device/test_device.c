@@ -15,7 +15,7 @@
 #include "device/backend/cuda.h"
 #include "net/kernel/bf16.h"
 #include "overlap/clip/lanes.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "overlap/tpn/portion.h"
 #include "overlap/weights.h"
 
@@ -55,7 +55,7 @@ static void ask_processor(const char *name, const double *pairs, int count, bool
                           Answers *answers) {
   OverlapModel model;
   OverlapBatch batch = batch_of(pairs, count, answers, has_gradient);
-  ck_assert_ok(overlap_model_create(&model, name));
+  ck_assert_ok(overlap_models_create(&model, name));
   if (strcmp(name, "tpn-bf16") == 0) use_emulation(&model);
   ck_assert_ok(overlap_model_eval(&model, &batch));
   overlap_model_destroy(&model);
@@ -259,7 +259,7 @@ START_TEST(centroids_are_answered_to_the_bit) {
       ck_assert_ok(device_overlap_eval(&overlap, &batch));
       continue;
     }
-    ck_assert_ok(overlap_model_create(&model, k == 1 ? name : "clip"));
+    ck_assert_ok(overlap_models_create(&model, k == 1 ? name : "clip"));
     ck_assert_ok(overlap_model_eval(&model, &batch));
     overlap_model_destroy(&model);
   }

@@ -16,7 +16,7 @@
 #include "device/network/pack.h"
 #include "device/overlap/overlap.h"
 #include "net/kernel/bf16.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 #define HAS_MMA
 #define MMA_HERE 32
@@ -250,7 +250,7 @@ static void ask_processor(const char *name, const double *pairs, const Answers *
   OverlapModel model;
   const OverlapBatch batch = {
       .pair_count = ALL, .pairs = pairs, .volume = answers->volume, .flags = answers->flags};
-  ck_assert_ok(overlap_model_create(&model, name));
+  ck_assert_ok(overlap_models_create(&model, name));
   ck_assert_ok(overlap_model_eval(&model, &batch));
   overlap_model_destroy(&model);
 }

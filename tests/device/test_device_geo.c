@@ -12,6 +12,7 @@
 #include "datagen/hard.h"
 #include "overlap/geo/model.h"
 #include "overlap/invariant.h"
+#include "overlap/models.h"
 
 enum { COUNT = 2051, MEMBERS = 64, MODELS = 2, QUANTITIES = 3 };
 
@@ -42,7 +43,7 @@ static OverlapBatch batch_of(const double *pairs, int count, const Answers *answ
 
 static void ask_processor(const char *name, const OverlapBatch *batch, bool is_fused) {
   OverlapModel model;
-  ck_assert_ok(overlap_model_create(&model, name));
+  ck_assert_ok(overlap_models_create(&model, name));
   if (!is_fused) ((OverlapGeoOverlap *)model.self)->model.kernel = &overlap_geo_bundle_kernel_portable;
   ck_assert_ok(overlap_model_eval(&model, batch));
   overlap_model_destroy(&model);

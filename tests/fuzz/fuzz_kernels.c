@@ -17,7 +17,7 @@
 #include "overlap/clip/lanes.h"
 #include "overlap/geo/model.h"
 #include "overlap/invariant.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "overlap/tpn/portion.h"
 #include "pairs.h"
 #include "target.h"
@@ -64,7 +64,7 @@ static Contestant *contestant_of(int m) {
   Contestant *contestant = &contestants[m];
   if (!device.ops) FUZZ_CLAIM(device_open(&device, "host") == STATUS_OK, "%s", status_message());
   if (contestant->model.ops) return contestant;
-  FUZZ_CLAIM(overlap_model_create(&contestant->model, name_of(m)) == STATUS_OK, "%s", status_message());
+  FUZZ_CLAIM(overlap_models_create(&contestant->model, name_of(m)) == STATUS_OK, "%s", status_message());
   FUZZ_CLAIM(device_overlap_create(&contestant->kernels, &device, name_of(m)) == STATUS_OK, "%s",
              status_message());
   use_order_of_kernels(m, &contestant->model);

@@ -20,7 +20,7 @@
 #include "datagen/hard.h"
 #include "overlap/geo/gate.h"
 #include "overlap/invariant.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "pairs.h"
 #include "target.h"
 
@@ -57,7 +57,7 @@ typedef enum Model { EXACT, CLIP_SCALAR, CLIP, GEO, MODEL_COUNT } Model;
 static const OverlapModel *model_of(Model model) {
   static OverlapModel models[MODEL_COUNT];
   if (!models[model].ops)
-    FUZZ_CLAIM(overlap_model_create(&models[model], names[model]) == STATUS_OK, "%s", status_message());
+    FUZZ_CLAIM(overlap_models_create(&models[model], names[model]) == STATUS_OK, "%s", status_message());
   return &models[model];
 }
 

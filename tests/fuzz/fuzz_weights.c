@@ -7,7 +7,7 @@
 #include "datagen/hard.h"
 #include "net/files/weights.h"
 #include "overlap/geo/network.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "overlap/tpn/network.h"
 #include "overlap/weights.h"
 #include "target.h"
@@ -44,7 +44,7 @@ static void read_both(const char *path) {
 // Weights are any finite numbers, so the volumes may be, too: nothing is claimed of them.
 static void read_model(const char *path) {
   OverlapModel model;
-  Status status = overlap_model_create(&model, path);
+  Status status = overlap_models_create(&model, path);
   if (status) {
     FUZZ_CLAIM(status == STATUS_INPUT, "status %d: %s", (int)status, status_message());
     FUZZ_CLAIM(strstr(status_message(), path), "no path in '%s'", status_message());

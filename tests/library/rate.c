@@ -11,7 +11,7 @@
 
 #include "app/bench/overlap/pairs.h"
 #include "app/bench/timer.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 enum { PAIRS = 4096, CALLS = 100, ROUNDS = 15 };
 
@@ -81,7 +81,7 @@ static Status open_all(Contestant contestants[3], const char *name) {
   options.model = name, options.threads = 1;
   for (int c = 0; c < 3; c++) {
     contestants[c].threads = c;
-    if (c == 0) TRY(overlap_model_create(&contestants[c].model, name));
+    if (c == 0) TRY(overlap_models_create(&contestants[c].model, name));
     for (int h = 0; h < c; h++)
       if (tetlap_overlap_open_with(&contestants[c].overlap[h], &options)) return fail_library();
   }

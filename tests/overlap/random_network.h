@@ -11,7 +11,7 @@
 #include "base/random.h"
 #include "net/files/weights.h"
 #include "overlap/exact/exact.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 static char path[64];
 
@@ -65,7 +65,7 @@ static inline void draw_pairs(uint64_t seed, int count, double *pairs) {
 
 static inline OverlapModel open_with(const char *name, OverlapOptions options) {
   OverlapModel model;
-  ck_assert_ok(overlap_model_create_with(&model, name, path, &options));
+  ck_assert_ok(overlap_models_create_with(&model, name, path, &options));
   return model;
 }
 

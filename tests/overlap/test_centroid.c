@@ -11,7 +11,7 @@
 #include "datagen/hard.h"
 #include "overlap/exact/exact.h"
 #include "overlap/invariant.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 // How far V may be off, as shares of V and of the smaller volume, whichever is less strict; the moment V x̄
 // may be off by the extent times that.
@@ -54,7 +54,7 @@ static Answer ask_exact(const double x[24]) {
 
 static OverlapModel open_model(int index) {
   OverlapModel model;
-  ck_assert_ok(overlap_model_create(&model, demands[index].name));
+  ck_assert_ok(overlap_models_create(&model, demands[index].name));
   ck_assert(overlap_model_has_own_centroid(&model));
   return model;
 }

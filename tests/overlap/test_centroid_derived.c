@@ -12,7 +12,7 @@
 #include "overlap/centroid.h"
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 enum { PAIRS = 200 };
 
@@ -163,7 +163,7 @@ enum { NETWORKS = sizeof networks / sizeof *networks };
 
 START_TEST(models_without_their_own_have_it_too) {
   OverlapModel model;
-  ck_assert_ok(overlap_model_create(&model, networks[_i]));
+  ck_assert_ok(overlap_models_create(&model, networks[_i]));
   ck_assert(!overlap_model_has_own_centroid(&model));
   Random random = random_seeded(47, 0);
   double off = 0, off_middle = 0;

@@ -17,7 +17,7 @@
 
 #include "base/machine/interrupt.h"
 #include "base/random.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "overlap/source.h"
 
 enum { PAIRS = 300 };
@@ -42,12 +42,12 @@ static OverlapBatch batch_of(int count, bool with_gradient, bool with_centroid) 
 }
 
 static void open_model(OverlapModel *model, const char *word) {
-  ck_assert_ok(overlap_model_create(model, word));
+  ck_assert_ok(overlap_models_create(model, word));
 }
 
 static void expect_refused(const char *word, Status status, const char *says) {
   OverlapModel model;
-  ck_assert_int_eq(overlap_model_create(&model, word), status);
+  ck_assert_int_eq(overlap_models_create(&model, word), status);
   ck_assert_msg(strstr(status_message(), says), "%s", status_message());
 }
 
@@ -68,8 +68,12 @@ START_TEST(a_word_says_what_it_is) {
     OverlapSource source;
     const char *path;
   } cases[] = {{"clip", OVERLAP_SOURCE_NAME, ""},
-               {"hybrid=a/b.safetensors", OVERLAP_SOURCE_NAME, "a/b.safetensors"},
+               {"hybrid=a/b.safetensors", OVERLAP_SOURCE_WEIGHTS, "a/b.safetensors"},
                {"hybrid=geo", OVERLAP_SOURCE_NAME, ""},
+               {"fade:.05=both=a/b.so", OVERLAP_SOURCE_LIBRARY, "a/b.so"},
+               {"both=exec:x=y z", OVERLAP_SOURCE_COMMAND, ""},
+               {"exec:env a=b.so", OVERLAP_SOURCE_COMMAND, ""},
+               {"./both=b.so", OVERLAP_SOURCE_LIBRARY, "./both=b.so"},
                {"a.safetensors", OVERLAP_SOURCE_WEIGHTS, "a.safetensors"},
                {"./a.so", OVERLAP_SOURCE_LIBRARY, "./a.so"},
                {".so", OVERLAP_SOURCE_WEIGHTS, ".so"},
@@ -324,8 +328,6 @@ START_TEST(volumes_that_none_can_have_are_flagged) {
 END_TEST
 
 START_TEST(flat_and_disjoint_pairs_are_not_asked_for_unless_ghosts_are_kept) {
-  OverlapOptions keep = overlap_options_default();
-  keep.ghosts = OVERLAP_GHOSTS_KEEP;
   OverlapModel model;
   OverlapBatch batch = batch_of(3, false, false);
   for (int v = 12; v < 24; v++) pairs[0][v] += 10;
@@ -335,14 +337,12 @@ START_TEST(flat_and_disjoint_pairs_are_not_asked_for_unless_ghosts_are_kept) {
   ck_assert(flags[0] == OVERLAP_DISJOINT && volume[0] == 0);
   ck_assert(flags[1] == OVERLAP_FLAT && volume[1] == 0);
   overlap_model_destroy(&model);
-  ck_assert_ok(overlap_model_create_with(&model, TETLAP_MODEL_0, NULL, &keep));
+  open_model(&model, "keep=" TETLAP_MODEL_0);
   ck_assert(overlap_model_has_ghosts(&model));
   ck_assert_ok(overlap_model_eval(&model, &batch));
   ck_assert(!(flags[0] & OVERLAP_DISJOINT) && volume[0] == 1e-3);
   ck_assert(flags[1] == OVERLAP_FLAT && volume[1] == 0);
   overlap_model_destroy(&model);
-  keep.ghosts = OVERLAP_GHOSTS_FADE;
-  ck_assert_int_eq(overlap_model_create_with(&model, TETLAP_MODEL_0, NULL, &keep), STATUS_INPUT);
 }
 END_TEST
 
@@ -397,6 +397,26 @@ START_TEST(a_python_function_answers_with_all_that_it_has) {
 END_TEST
 
 // The example of a command has a sixth of what the Python function above has.
+// A force needs a place: that of clip, where the model has none.
+START_TEST(a_model_of_v_alone_runs_where_its_volumes_are_placed) {
+  static const char *const words[] = {PYTHON("alone"), "placed=" PYTHON("alone")};
+  if (!has_numpy()) return;
+  for (int k = 0; k < 2; k++) {
+    char text[20000], folder[] = "/tmp/tetlap-foreign-XXXXXX", command[1500];
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(command, sizeof command,
+             "run %s/examples/02_two_blocks.yaml --set time.end=0.02 --set output.vtu=false --overlap %s -o "
+             "%s",
+             TETLAP_SOURCE_DIR, words[k], folder);
+    const int code = run_program(command, text);
+    ck_assert_msg(code == (k == 0 ? 65 : 0), "%s", text);
+    ck_assert_msg(strstr(text, k == 0 ? "gives V alone" : "overlap model placed=models:alone"), "%s", text);
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    ck_assert_int_eq(system(command), 0);
+  }
+}
+END_TEST
+
 START_TEST(a_command_answers_as_a_function_does) {
   enum { MANY = 3000 }; // more than the memory has room for at first
   OverlapModel model;
@@ -672,6 +692,7 @@ int main(void) {
   tcase_add_test(cases, volumes_that_none_can_have_are_flagged);
   tcase_add_test(cases, flat_and_disjoint_pairs_are_not_asked_for_unless_ghosts_are_kept);
   tcase_add_test(cases, a_python_function_answers_with_all_that_it_has);
+  tcase_add_test(cases, a_model_of_v_alone_runs_where_its_volumes_are_placed);
   tcase_add_test(cases, a_command_answers_as_a_function_does);
   tcase_add_test(cases, the_shared_memory_grows);
   tcase_add_test(cases, python_that_is_wrong);

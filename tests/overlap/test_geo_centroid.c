@@ -14,7 +14,7 @@
 #include "overlap/geo/model.h"
 #include "overlap/geo/network.h"
 #include "overlap/invariant.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 static const int set_sizes[] = {36, 56, 70, 100, 120};
 
@@ -32,7 +32,7 @@ static OverlapModel random_model(int inputs, double strength) {
   ck_assert_int_eq(net_weights_write_f64(path, &net, &card), NET_OK);
   net_model_destroy_f64(&net);
   OverlapModel model;
-  ck_assert_ok(overlap_model_create(&model, path));
+  ck_assert_ok(overlap_models_create(&model, path));
   unlink(path);
   ck_assert(overlap_model_has_own_centroid(&model));
   return model;

@@ -7,7 +7,7 @@
 #include "base/random.h"
 #include "overlap/geo/coplanar.h"
 #include "overlap/geo/geo.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 // The corner tetrahedron 0, e₁, e₂, e₃, and itself moved.
 static void corner_pair(const double move[3], double pair[24]) {
@@ -145,7 +145,7 @@ static void push_cube(const OverlapModel *model, double depth, double offset, do
 START_TEST(coinciding_planes_inside_of_bodies_do_not_attract_each_other) {
   const char *names[] = {"geo", "geo-small"};
   OverlapModel model;
-  ck_assert_ok(overlap_model_create(&model, names[_i]));
+  ck_assert_ok(overlap_models_create(&model, names[_i]));
   for (double depth = 0.02; depth < 0.4; depth += 0.14) {
     double before[3], after[3], force[3];
     push_cube(&model, depth, -1e-9, before);

@@ -14,7 +14,7 @@
 #include "datagen/hard.h"
 #include "datagen/pairs.h"
 #include "overlap/invariant.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 enum { SIZE = 24, MOST = 4096 };
 
@@ -22,7 +22,7 @@ static OverlapModel open_named(const char *name, double doubt) {
   OverlapModel model;
   OverlapOptions options = overlap_options_default();
   if (doubt > 0) options.doubt = doubt;
-  ck_assert_ok(overlap_model_create_with(&model, name, NULL, &options));
+  ck_assert_ok(overlap_models_create_with(&model, name, NULL, &options));
   return model;
 }
 
@@ -197,9 +197,9 @@ START_TEST(a_bound_is_no_model_and_a_network_without_one_no_hybrid) {
   OverlapModel model;
   char path[4096];
   ck_assert_ok(data_find("net/weights/geo-small-bound.safetensors", path, sizeof path));
-  ck_assert_int_eq(overlap_model_create(&model, path), STATUS_INPUT);
+  ck_assert_int_eq(overlap_models_create(&model, path), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "a bound of the error of V"));
-  ck_assert_int_ne(overlap_model_create_with(&model, "hybrid", path, NULL), STATUS_OK);
+  ck_assert_int_ne(overlap_models_create_with(&model, "hybrid", path, NULL), STATUS_OK);
   char lonely[] = "/tmp/test_hybrid_XXXXXX.safetensors", command[8300];
   int file = mkstemps(lonely, 12);
   ck_assert_int_ge(file, 0);
@@ -207,7 +207,7 @@ START_TEST(a_bound_is_no_model_and_a_network_without_one_no_hybrid) {
   ck_assert_ok(data_find("net/weights/geo.safetensors", path, sizeof path));
   snprintf(command, sizeof command, "cp '%s' '%s'", path, lonely);
   ck_assert_int_eq(system(command), 0);
-  ck_assert_int_ne(overlap_model_create_with(&model, "hybrid", lonely, NULL), STATUS_OK);
+  ck_assert_int_ne(overlap_models_create_with(&model, "hybrid", lonely, NULL), STATUS_OK);
   ck_assert_ptr_nonnull(strstr(status_message(), "model.kind: bound"));
   unlink(lonely);
 }
@@ -216,10 +216,10 @@ END_TEST
 // Another network of the scene: what hybrid was with it.
 START_TEST(with_the_network_of_tpn_scene_the_centroid_is_not_its_own) {
   OverlapModel model;
-  ck_assert_ok(overlap_model_create_with(&model, "hybrid", "tpn-scene", NULL));
+  ck_assert_ok(overlap_models_create_with(&model, "hybrid", "tpn-scene", NULL));
   ck_assert(!overlap_model_has_own_centroid(&model) && overlap_model_has_hessian(&model));
   overlap_model_destroy(&model);
-  ck_assert_ok(overlap_model_create(&model, "hybrid"));
+  ck_assert_ok(overlap_models_create(&model, "hybrid"));
   ck_assert(overlap_model_has_own_centroid(&model) && overlap_model_has_hessian(&model));
   overlap_model_destroy(&model);
 }

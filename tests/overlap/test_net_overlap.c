@@ -3,6 +3,7 @@
 #include "random_network.h"
 
 #include "overlap/invariant.h"
+#include "overlap/models.h"
 #include "overlap/tpn/model.h"
 
 static double volume_of(const void *self, const double pair[24]) {
@@ -117,14 +118,14 @@ END_TEST
 START_TEST(a_file_says_which_model_it_is) {
   OverlapModel model;
   write_network("unit, V times 1000", NET_RELU);
-  ck_assert_ok(overlap_model_create(&model, path));
+  ck_assert_ok(overlap_models_create(&model, path));
   ck_assert(model.ops == &overlap_tpn_ops && overlap_model_has_ghosts(&model));
   overlap_model_destroy(&model);
-  ck_assert_ok(overlap_model_create(&model, TETLAP_SOURCE_DIR "/net/weights/geo-small.safetensors"));
+  ck_assert_ok(overlap_models_create(&model, TETLAP_SOURCE_DIR "/net/weights/geo-small.safetensors"));
   ck_assert(strcmp(model.ops->name, "geo") == 0 && !overlap_model_has_ghosts(&model));
   overlap_model_destroy(&model);
   unlink(path);
-  ck_assert_int_eq(overlap_model_create(&model, path), STATUS_IO);
+  ck_assert_int_eq(overlap_models_create(&model, path), STATUS_IO);
   ck_assert_ptr_nonnull(strstr(status_message(), path));
 }
 END_TEST
@@ -224,10 +225,10 @@ START_TEST(a_range_that_is_not_known_cannot_send_pairs_to_exact) {
   write_shape(&shape, "unit, V times 1000", "anything", 40, 5);
   OverlapModel model;
   OverlapOptions options = overlap_options_default();
-  ck_assert_ok(overlap_model_create_with(&model, "tpn", path, &options));
+  ck_assert_ok(overlap_models_create_with(&model, "tpn", path, &options));
   overlap_model_destroy(&model);
   options.beyond = OVERLAP_BEYOND_EXACT;
-  ck_assert_int_eq(overlap_model_create_with(&model, "tpn", path, &options), STATUS_INPUT);
+  ck_assert_int_eq(overlap_models_create_with(&model, "tpn", path, &options), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "tetlap weights --range"));
   unlink(path);
 }

@@ -14,7 +14,7 @@
 #include "overlap/exact/fixed.h"
 #include "overlap/exact/integer.h"
 #include "overlap/invariant.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 static const OverlapOps *const models[] = {&overlap_exact_ops, &overlap_cgal_ops};
 enum { MODEL_COUNT = 2 };
@@ -357,7 +357,7 @@ START_TEST(threads_give_identical_results) {
   static double x[PAIRS][24], volume[2][PAIRS], gradient[2][PAIRS][24];
   static unsigned flags[2][PAIRS];
   OverlapModel model;
-  ck_assert_ok(overlap_model_create(&model, models[_i]->name));
+  ck_assert_ok(overlap_models_create(&model, models[_i]->name));
   for (int k = 0; k < PAIRS; k++) {
     const DatagenHardPair pair =
         datagen_hard_make(k % DATAGEN_HARD_CLASS_COUNT, k / DATAGEN_HARD_CLASS_COUNT);

@@ -11,7 +11,7 @@
 #include "datagen/hard.h"
 #include "overlap/exact/exact.h"
 #include "overlap/invariant.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "overlap/separation.h"
 
 // What a model may lack. Networks that follow the paper see vertices in an order, know volumes roughly and
@@ -60,7 +60,7 @@ static double step_of(const Demand *demand) {
 
 static const OverlapOps *model_at(int index) {
   int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
+  const OverlapOps *const *models = overlap_models_list(&count);
   ck_assert_int_lt(index, count);
   return models[index];
 }
@@ -103,7 +103,7 @@ static double exact_volume(const double x[24]) {
 
 static OverlapModel open_model(int index) {
   OverlapModel model;
-  ck_assert_ok(overlap_model_create(&model, model_at(index)->name));
+  ck_assert_ok(overlap_models_create(&model, model_at(index)->name));
   return model;
 }
 
@@ -502,10 +502,10 @@ END_TEST
 
 START_TEST(an_unknown_name_is_an_error_that_lists_the_known_ones) {
   OverlapModel model;
-  ck_assert_int_eq(overlap_model_create(&model, "clipp"), STATUS_INPUT);
+  ck_assert_int_eq(overlap_models_create(&model, "clipp"), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "did you mean 'clip'"));
   int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
+  const OverlapOps *const *models = overlap_models_list(&count);
   for (int m = 0; m < count; m++) ck_assert_ptr_nonnull(strstr(status_message(), models[m]->name));
   overlap_model_destroy(&model); // also of one that was never made
 }
@@ -514,7 +514,7 @@ END_TEST
 int main(void) {
   TCase *cases = tcase_create("overlap_models");
   int count;
-  overlap_model_list(&count);
+  overlap_models_list(&count);
   tcase_add_loop_test(cases, volumes_are_right_in_every_class, 0, count);
   tcase_add_loop_test(cases, flags_say_what_the_numbers_are, 0, count);
   tcase_add_loop_test(cases, volumes_are_bounded_and_gradients_balance, 0, count);

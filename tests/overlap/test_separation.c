@@ -6,7 +6,7 @@
 
 #include "base/random.h"
 #include "base/vec3.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "overlap/separation.h"
 
 static const double CORNER[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -43,7 +43,7 @@ END_TEST
 
 START_TEST(the_sign_says_whether_the_interiors_meet) {
   OverlapModel exact;
-  ck_assert_ok(overlap_model_create(&exact, "exact"));
+  ck_assert_ok(overlap_models_create(&exact, "exact"));
   Random random = random_seeded(11, 0);
   int apart = 0, certain = 0;
   for (int k = 0; k < 4000; k++) {
@@ -70,7 +70,7 @@ END_TEST
 
 START_TEST(nothing_is_certain_about_overlap) {
   OverlapModel exact;
-  ck_assert_ok(overlap_model_create(&exact, "exact"));
+  ck_assert_ok(overlap_models_create(&exact, "exact"));
   Random random = random_seeded(12, 0);
   for (int k = 0; k < 4000; k++) {
     // Touching to rounding: B's vertices are moved onto A's face plane z = 0, rotated and far from the
@@ -100,7 +100,7 @@ END_TEST
 // vertex: what is certain must be so although differences over the pair's extent lose the small one's digits.
 START_TEST(certainty_holds_at_any_ratio_of_sizes) {
   OverlapModel exact;
-  ck_assert_ok(overlap_model_create(&exact, "exact"));
+  ck_assert_ok(overlap_models_create(&exact, "exact"));
   Random random = random_seeded(15, 0);
   int certain = 0, overlapping = 0;
   for (int k = 0; k < 4000; k++) {

@@ -9,12 +9,14 @@
 #include "base/random.h"
 #include "folder.h"
 #include "overlap/invariant.h"
+#include "overlap/models.h"
 #include "overlap/slopes.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE, PAIRS = 300 };
 
 // Through geo with and without a share of clipping, and through V and ∇V.
-static const char *const names[] = {"geo", "geo-small", "hybrid", "hybrid=geo"};
+static const char *const names[] = {"geo",         "geo-small",          "hybrid", "hybrid=geo", "both=geo",
+                                    "fade:.3=geo", "coplanar=placed=geo"};
 
 // Edges of about 1; centres so near that most intersect.
 static void draw(Random *random, double pair[SIZE]) {
@@ -61,7 +63,7 @@ START_TEST(slopes_agree_with_differences) {
   OverlapModel model;
   Random random = random_seeded(5, 0);
   int compared = 0, kinks = 0;
-  ck_assert_ok(overlap_model_create(&model, names[_i]));
+  ck_assert_ok(overlap_models_create(&model, names[_i]));
   ck_assert(overlap_slopes_are_there(&model));
   for (int n = 0; n < PAIRS; n++) {
     double pair[SIZE], volume, gradient[SIZE], slopes[3 * SIZE];
@@ -114,7 +116,7 @@ static double sum_with(const OverlapModel *model, const double *weights, const d
   OverlapModel other;
   snprintf(path, sizeof path, "%s/other.safetensors", folder);
   ck_assert_ok(model->ops->training->write(model->self, weights, path));
-  ck_assert_ok(overlap_model_create(&other, path));
+  ck_assert_ok(overlap_models_create(&other, path));
   double sum = sum_of(&other, pairs, by);
   overlap_model_destroy(&other);
   return sum;
@@ -127,7 +129,7 @@ START_TEST(slopes_by_weights_agree_with_differences) {
   OverlapModel model;
   Random random = random_seeded(7, 0);
   double pairs[TRAINED * SIZE], by[4 * TRAINED];
-  ck_assert_ok(overlap_model_create(&model, names[_i]));
+  ck_assert_ok(overlap_models_create(&model, names[_i]));
   const OverlapTraining *training = model.ops->training;
   size_t count = training->count(model.self);
   double *own = calloc(count, sizeof *own), *slope = calloc(count, sizeof *slope),

@@ -23,7 +23,7 @@
 #include "fem/model/build.h"
 #include "fem/run/checkpoint/checkpoint.h"
 #include "fem/run/run.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "suite.h"
 
 enum { MOST_LIVE = 1 << 16 };
@@ -193,7 +193,7 @@ static Status ask_model(const char *name) {
   static const double pair[24] = {0,   0,   0,   1,   0,   0,   0,   1,   0,   0,   0,   1,
                                   0.2, 0.1, 0.3, 0.9, 0.3, 0.2, 0.1, 0.8, 0.4, 0.3, 0.2, 0.9};
   OverlapModel model = {0};
-  Status status = overlap_model_create(&model, name);
+  Status status = overlap_models_create(&model, name);
   double volume, gradient[24];
   OverlapBatch batch = {.pair_count = 1, .pairs = pair, .volume = &volume, .gradient = gradient};
   if (!status) status = overlap_model_eval(&model, &batch);
@@ -204,7 +204,7 @@ static Status ask_model(const char *name) {
 // Those without networks keep nothing.
 START_TEST(an_overlap_model_is_made_and_asked) {
   int count, allocating = 0;
-  const OverlapOps *const *models = overlap_model_list(&count);
+  const OverlapOps *const *models = overlap_models_list(&count);
   for (int m = 0; m < count; m++) allocating += fail_each(ask_model, models[m]->name, 1, 1) > 3;
   ck_assert_int_ge(allocating, 5);
 }

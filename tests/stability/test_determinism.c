@@ -7,19 +7,19 @@
 
 #include "base/memory.h"
 #include "base/random.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "scene.h"
 
 static const OverlapOps *model_of(int index) {
   int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
+  const OverlapOps *const *models = overlap_models_list(&count);
   ck_assert_int_lt(index, count);
   return models[index];
 }
 
 static int model_count(void) {
   int count;
-  overlap_model_list(&count);
+  overlap_models_list(&count);
   return count;
 }
 
@@ -70,7 +70,7 @@ START_TEST(the_number_of_threads_changes_no_bit_of_a_volume) {
   int count = affordable > 10000 ? 10000 : affordable < 20 ? 20 : (int)affordable;
   double *pairs = make_pairs(count);
   OverlapModel model;
-  ck_assert_ok(overlap_model_create(&model, ops->name));
+  ck_assert_ok(overlap_models_create(&model, ops->name));
   Answer one = ask(&model, pairs, count, 1);
   int overlapping = 0;
   for (int i = 0; i < count; i++) overlapping += one.volumes[i] > 0;

@@ -20,7 +20,7 @@
 #include "base/memory.h"
 #include "fem/model/build.h"
 #include "fem/run/run.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "suite.h"
 
 // Where a fault strikes: at the call `first` of its kind, counted from 1, and at `count` calls from there. 0:
@@ -152,14 +152,11 @@ static Status eval_pair(const void *self, const double pair[24], const OverlapAn
   return true_model->eval_pair(self, pair, answer);
 }
 
-Status __real_overlap_model_create_with(OverlapModel *model, const char *name, const char *weights,
-                                        const OverlapOptions *options);
-Status __wrap_overlap_model_create_with(OverlapModel *model, const char *name, const char *weights,
-                                        const OverlapOptions *options);
+Status __real_overlap_models_create(OverlapModel *model, const char *word);
+Status __wrap_overlap_models_create(OverlapModel *model, const char *word);
 
-Status __wrap_overlap_model_create_with(OverlapModel *model, const char *name, const char *weights,
-                                        const OverlapOptions *options) {
-  TRY(__real_overlap_model_create_with(model, name, weights, options));
+Status __wrap_overlap_models_create(OverlapModel *model, const char *word) {
+  TRY(__real_overlap_models_create(model, word));
   true_model = model->ops;
   broken_model = *true_model;
   broken_model.eval_pair = eval_pair;

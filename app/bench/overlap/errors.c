@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "overlap/models.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE };
 
@@ -22,7 +23,7 @@ Status app_bench_truth_create(AppBenchTruth *truth, int count, const double *pai
                            .volume = memory_zeroed((size_t)count, sizeof(double)),
                            .gradient = memory_zeroed((size_t)count * SIZE, sizeof(double))};
   if (!truth->volume || !truth->gradient) return status_no_memory("what is true of the pairs");
-  TRY(overlap_model_create(&exact, "exact"));
+  TRY(overlap_models_create(&exact, "exact"));
   Status status = evaluate(&exact, count, pairs, truth->volume, truth->gradient, NULL);
   overlap_model_destroy(&exact);
   return status;

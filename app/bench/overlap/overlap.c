@@ -16,6 +16,7 @@
 #include "base/log.h"
 #include "base/machine/clock.h"
 #include "base/memory.h"
+#include "overlap/models.h"
 
 typedef enum Quantity { VOLUME, CENTROID, GRADIENT, HESSIAN, QUANTITY_COUNT } Quantity;
 static const char *const quantities[QUANTITY_COUNT] = {"V", "V+centroid", "V+grad", "V+grad+hess"};
@@ -48,7 +49,7 @@ static const AppOption option_table[] = {
 
 static int list_models(const char *names[MAX_MODELS]) {
   int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
+  const OverlapOps *const *models = overlap_models_list(&count);
   for (int m = 0; m < count; m++) names[m] = models[m]->name;
   return count;
 }

@@ -11,6 +11,7 @@
 #include "app/cli/parse.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "overlap/models.h"
 
 enum { MAX_MODELS = 16, MAX_CASES = 16 };
 
@@ -140,7 +141,7 @@ static Status run(const Options *options) {
   int count = 0;
   OverlapModel clip;
   omp_set_num_threads(options->common.threads);
-  TRY(overlap_model_create(&clip, "clip"));
+  TRY(overlap_models_create(&clip, "clip"));
   Status status = STATUS_OK;
   for (int m = 0; m < options->model_count && !status; m++)
     status = measure_model(options, options->models[m], &clip, rows, &count);

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "app/cli/options.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 AppCliShell app_cli_completion_find(const char *name) {
   static const char *const names[APP_CLI_SHELL_COUNT] = {"bash", "zsh", "fish"};
@@ -32,7 +32,7 @@ static void print_each(FILE *stream, const AppCommand *command, const char *call
 
 static void print_models(FILE *stream) {
   int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
+  const OverlapOps *const *models = overlap_models_list(&count);
   for (int m = 0; m < count; m++) fprintf(stream, "%s%s", m ? " " : "", models[m]->name);
 }
 

@@ -24,9 +24,8 @@ typedef struct Options {
   const char *words[2]; // the model, and a file of pairs
   int word_count;
   AppSourceDef source;
-  int threads;  // 0: all
-  int paths;    // to look for jumps along; 0: none
-  double doubt; // of a hybrid; 0: its own
+  int threads; // 0: all
+  int paths;   // to look for jumps along; 0: none
   bool has_seed, is_json, is_quiet;
 } Options;
 
@@ -43,10 +42,6 @@ static const AppOption option_table[] = {
      CLI_TO(Options, source.volume)},
     {"paths", 0, "N", "Look for jumps of V and of its gradient along N paths; needs no data", 0, CLI_INTEGER,
      CLI_TO(Options, paths), 1, INT_MAX},
-    {"doubt", 0, "T",
-     "Of hybrid: the bound of V's relative error from which clipping begins, as contact.net.doubt "
-     "(default: 0.005)",
-     0, CLI_POSITIVE, CLI_TO(Options, doubt)},
     {"threads", 't', "N", "Threads (default: all); the result does not depend on it", 0, CLI_INTEGER,
      CLI_TO(Options, threads), 1, APP_CLI_MOST_THREADS},
     {"json", 'j', NULL, "Print the result as JSON", 0, CLI_FLAG, CLI_TO(Options, is_json)},
@@ -116,7 +111,6 @@ static Status record(const Options *options, const Findings *findings) {
   record_text(record, "model", name);
   record_text(record, "weights", app_model_names_locate(options->words[0], path) ? path : NULL);
   record_text(record, "program", app_versions_program());
-  if (options->doubt > 0) record_number(record, "doubt", options->doubt);
   if (findings->has_evaluation) {
     record_text(record, "data", findings->data);
     app_evaluation_record(&findings->evaluation, record);
@@ -161,19 +155,11 @@ static Status evaluate_all(const Options *options, const OverlapModel *model) {
 
 static Status open_and_evaluate(const Options *options) {
   OverlapModel model;
-  OverlapOptions wanted = overlap_options_default();
-  if (options->doubt > 0) wanted.doubt = options->doubt;
-  Status opened =
-      app_evaluation_model_open_with(&model, options->words[0], options->doubt > 0 ? &wanted : NULL);
+  Status opened = app_evaluation_model_open(&model, options->words[0]);
   if (opened == STATUS_INPUT && !overlap_weights_is_path(options->words[0]))
     return STATUS_USAGE; // no such name
   TRY(opened);
-  Status status = options->doubt > 0 && !app_evaluation_bounds_are_told(&model)
-                      ? status_fail(STATUS_USAGE,
-                                    "--doubt: the model '%s' gives no bound of its error; hybrid and "
-                                    "hybrid=NETWORK of a geo do",
-                                    options->words[0])
-                      : evaluate_all(options, &model);
+  Status status = evaluate_all(options, &model);
   overlap_model_destroy(&model);
   return status;
 }

@@ -9,7 +9,7 @@
 #include "app/training/task.h"
 #include "app/training/tpn.h"
 #include "base/log.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "overlap/weights.h"
 
 typedef struct Options {
@@ -56,7 +56,7 @@ static Status stamp(const char *path, const char *config_path, const NetModel_f3
 
 static const OverlapOps *find_model(const char *name) {
   int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
+  const OverlapOps *const *models = overlap_models_list(&count);
   for (int m = 0; m < count; m++)
     if (strcmp(models[m]->name, name) == 0) return models[m];
   return NULL;

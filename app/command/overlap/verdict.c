@@ -16,7 +16,7 @@
 #include "base/machine/cpu.h"
 #include "base/memory.h"
 #include "overlap/foreign/foreign.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "overlap/source.h"
 
 enum { MOST_MODELS = 16 };
@@ -111,7 +111,7 @@ static Status try_model(const char *source) {
   if (strchr(source, ',') && !strchr(source, ':') && access(source, F_OK)) // neither a command nor a file
     return status_fail(STATUS_USAGE,
                        "there is no overlap model '%s': name several models as words of their own", source);
-  TRY(overlap_model_create(&model, source));
+  TRY(overlap_models_create(&model, source));
   overlap_model_destroy(&model);
   return STATUS_OK;
 }

@@ -6,7 +6,7 @@
 #include "contact/def.h"
 #include "fem/material/material.h"
 #include "fem/sparse/solver.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "overlap/source.h"
 
 // The names that other layers own.
@@ -43,18 +43,19 @@ const SceneChoices app_scene_choices_solvers = {.name = solver_name, .help = sol
 
 static const char *overlap_name(int i) {
   int count;
-  const OverlapOps *const *models = overlap_model_list(&count);
+  const OverlapOps *const *models = overlap_models_list(&count);
   return i < count ? models[i]->name : NULL;
 }
 static const char *overlap_help(int i) {
   int count;
-  return overlap_model_list(&count)[i]->help;
+  return overlap_models_list(&count)[i]->help;
 }
 const SceneChoices app_scene_choices_overlaps = {
     .name = overlap_name,
     .help = overlap_help,
     .accepts = overlap_source_has_form,
-    .accepts_help = "a file NET.safetensors, MINE.so, MINE.py:NAME, or hybrid=NETWORK, exec:COMMAND"};
+    .accepts_help = "a file NET.safetensors, MINE.so, MINE.py:NAME, or exec:COMMAND; each may have wrappers "
+                    "before it, as in hybrid=geo and both=MINE.so"};
 
 // Names of numbers and switches in a scene's definition.
 
@@ -84,41 +85,6 @@ static const char *order_of_motion_help(int i) {
 }
 const SceneChoices app_scene_choices_orders_of_motion = {.name = order_of_motion_name,
                                                          .help = order_of_motion_help};
-
-// The numbers are those of overlap/options.h.
-
-const SceneChoices app_scene_choices_ghosts = {
-    .listed = (const SceneChoice[]){
-        {"auto", "as the model has it: tpn keep, tpn-scene fade"},
-        {"keep", "disjoint pairs have the volume that the network predicts"},
-        {"cut", "an exact test sets it to 0, and V jumps at first contact"},
-        {"fade", "an exact test sets it to 0, and V is faded in over the first overlap"},
-        {0}}};
-
-const SceneChoices app_scene_choices_gates = {
-    .listed = (const SceneChoice[]){{"auto", "as the model has it: tpn-scene status, others none"},
-                                    {"none", "V is the output of the volume head"},
-                                    {"status", "V is multiplied by the probability from the status head"},
-                                    {0}}};
-
-const SceneChoices app_scene_choices_orders = {
-    .listed = (const SceneChoice[]){{"auto", "as the model has it: tpn one, others both"},
-                                    {"one", "V(A, B) and V(B, A) differ"},
-                                    {"both", "the mean of V(A, B) and V(B, A), at twice the cost"},
-                                    {0}}};
-
-const SceneChoices app_scene_choices_beyond = {
-    .listed = (const SceneChoice[]){{"auto", "as the model has it: hybrid exact, others count"},
-                                    {"count", "they are counted in summary.json"},
-                                    {"exact", "they are evaluated by the exact model, blended over a band"},
-                                    {0}}};
-
-const SceneChoices app_scene_choices_coplanar = {
-    .listed = (const SceneChoice[]){
-        {"auto", "as the model has it: hybrid clip, others keep"},
-        {"keep", "the network evaluates them like any other"},
-        {"clip", "they are blended with clipping, the more the closer the faces are to coplanar"},
-        {0}}};
 
 // The number is FemSceneDef.starts_anyhow.
 const SceneChoices app_scene_choices_outcomes = {

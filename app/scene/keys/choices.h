@@ -8,8 +8,6 @@
 
 extern const SceneChoices app_scene_choices_laws, app_scene_choices_potentials, app_scene_choices_solvers,
     app_scene_choices_overlaps, app_scene_choices_elements, app_scene_choices_followings,
-    app_scene_choices_orders_of_motion, app_scene_choices_outcomes, app_scene_choices_ghosts,
-    app_scene_choices_gates, app_scene_choices_orders, app_scene_choices_beyond, app_scene_choices_coplanar,
-    app_scene_choices_histories;
+    app_scene_choices_orders_of_motion, app_scene_choices_outcomes, app_scene_choices_histories;
 
 #endif

@@ -68,35 +68,6 @@ static const SceneSection pair_friction = {.help = "friction between two",
                                            .shorthand = "coefficient",
                                            .finish = finish_friction};
 
-static const SceneKey net_keys[] = {
-    {"ghosts", SCENE_CHOICE, AT(FemContactDef, net_options.ghosts), .fallback = "auto",
-     .choices = &app_scene_choices_ghosts, .help = "tpn: predicted volumes of disjoint pairs"},
-    {"gate", SCENE_CHOICE, AT(FemContactDef, net_options.gate), .fallback = "auto",
-     .choices = &app_scene_choices_gates, .help = "tpn: whether the status head influences V"},
-    {"orders", SCENE_CHOICE, AT(FemContactDef, net_options.orders), .fallback = "auto",
-     .choices = &app_scene_choices_orders,
-     .help = "tpn, hybrid: order of the two tetrahedra in the network's input"},
-    {"out_of_range", SCENE_CHOICE, AT(FemContactDef, net_options.beyond), .fallback = "auto",
-     .choices = &app_scene_choices_beyond, .help = "tpn: pairs unlike those of the network's training"},
-    {"coplanar", SCENE_CHOICE, AT(FemContactDef, net_options.coplanar), .fallback = "auto",
-     .choices = &app_scene_choices_coplanar,
-     .help = "tpn, hybrid: pairs with nearly coplanar faces, whose V has kinks"},
-    {"touch", SCENE_NUMBER, AT(FemContactDef, net_options.touch), .range = "(0, 1)", .fallback = "0.02",
-     .help = "overlap share up to which V is faded in; `hybrid` of tpn-scene uses exact below, the network "
-             "above twice that"},
-    {"doubt", SCENE_NUMBER, AT(FemContactDef, net_options.doubt), .range = "(0, inf)", .fallback = "0.005",
-     .help = "hybrid of a geo: bound of the relative error of V up to which the network is used; above twice "
-             "that only `clip`"},
-    {"deep", SCENE_NUMBER, AT(FemContactDef, net_options.deep), .range = "(0, 2]", .fallback = "0.3",
-     .help = "hybrid of tpn-scene: overlap share up to which the network is used, exact above one and a half "
-             "times that"},
-    {"confidence", SCENE_NUMBER, AT(FemContactDef, net_options.confidence), .range = "(0.5, 1)",
-     .fallback = "0.95",
-     .help = "hybrid of tpn-scene: probability of the status head above which the network is used"},
-    {0},
-};
-static const SceneSection net = {.help = "use of networks after the paper", .keys = net_keys};
-
 static const SceneKey rest_keys[] = {
     {"speed", SCENE_NUMBER, AT(FemContactDef, rest_speed), .unit = "m/s", .range = "(0, inf)",
      .absent_help = "`time.tolerance` times √(E/ρ) of the slowest body",
@@ -184,9 +155,8 @@ static const SceneKey contact_keys[] = {
     {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "clip",
      .choices = &app_scene_choices_overlaps,
      .help = "the model that computes the overlap volume of two tetrahedra: a name, or a file of yours, from "
-             "the scene file: net.safetensors, mine.so, mine.py:name, hybrid=net.safetensors, exec:COMMAND"},
-    {"net", SCENE_SECTION, .section = &net,
-     .help = "of a learned model: its weights, or a mapping with more options"},
+             "the scene file: net.safetensors, mine.so, mine.py:name, exec:COMMAND; wrappers stand before "
+             "it, as in both=mine.so"},
     {"margin", SCENE_NUMBER, AT(FemContactDef, margin), .unit = "m", .range = "(0, inf)",
      .absent_help = "half the shortest mean edge of a body",
      .help = "pairs nearer than this are candidates; a step that moves a vertex farther is tried again with "

@@ -9,9 +9,11 @@ static const char POTENTIAL[] =
     "remove 'potential' and 'stiffness': the default potential is 'field', whose stiffness "
     "is chosen from the bodies; if you set it, it is in Pa/m";
 
-static const char WEIGHTS[] =
-    "write the weights as the model itself, contact.overlap: FILE.safetensors; as the network of hybrid, "
-    "contact.overlap: hybrid=FILE.safetensors";
+static const char NET[] =
+    "write into contact.overlap, before the model, what it asks for: keep=, cut= or fade:TOUCH= for ghosts, "
+    "both= for orders, coplanar= for coplanar, hybrid:DOUBT= for doubt, tpn-scene=FILE.safetensors for gate, "
+    "hybrid=FILE.safetensors for out_of_range, deep and confidence; the weights are the model itself, "
+    "contact.overlap: FILE.safetensors";
 
 // `value` NULL: the key itself; "*": any text.
 static const struct {
@@ -23,8 +25,7 @@ static const struct {
     {"contact.potential", "linear", POTENTIAL},
     {"contact.potential", "body", POTENTIAL},
     {"contact.hessian", NULL, "remove it: the matrix has all second derivatives, as with `full`"},
-    {"contact.net.weights", NULL, WEIGHTS},
-    {"contact.net", "*", WEIGHTS},
+    {"contact.net", NULL, NET},
     {"contact.friction.law", NULL,
      "remove it and write the coefficient alone, as friction: 0.3; contacts stick until the slip force "
      "reaches "

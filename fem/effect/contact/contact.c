@@ -17,6 +17,7 @@
 #include "fem/model/limits.h"
 #include "fem/scene/drive.h"
 #include "fem/scene/obstacle.h"
+#include "overlap/models.h"
 #include "overlap/source.h"
 
 typedef struct Contact {
@@ -96,11 +97,10 @@ static Status locate(const FemSceneDef *scene, char word[PATH_MAX]) {
 
 Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *name, OverlapModel *overlap) {
   char word[PATH_MAX];
-  const OverlapOptions *options = scene->contact.is_on ? &scene->contact.net_options : NULL;
   *overlap = (OverlapModel){0};
-  if (name) return overlap_model_create_with(overlap, name, NULL, options);
+  if (name) return overlap_models_create(overlap, name);
   TRY(locate(scene, word));
-  Status status = overlap_model_create_with(overlap, word, NULL, options);
+  Status status = overlap_models_create(overlap, word);
   if (!status) return status;
   return status_prefix(status, "%s: contact.overlap", fem_scene_where(scene, &scene->contact.place).text);
 }

@@ -5,6 +5,7 @@
 #include "app/evaluation/card.h"
 #include "base/memory.h"
 #include "bench_rows.h"
+#include "overlap/models.h"
 
 enum { COUNT = 50 };
 static const char BENCH[] = TETLAP_PROGRAM " bench";
@@ -65,12 +66,12 @@ END_TEST
 START_TEST(a_card_tells_a_networks_size) {
   OverlapModel model;
   AppModelCard card;
-  ck_assert_ok(overlap_model_create(&model, "geo-small"));
+  ck_assert_ok(overlap_models_create(&model, "geo-small"));
   ck_assert_ok(app_evaluation_card_read(&model, "geo-small", &card));
   ck_assert_str_eq(card.family, "geo");
   ck_assert_int_eq((int)card.parameters, 56 * 16 + 16 + 16 * 16 + 16 + 46 * (16 + 1));
   overlap_model_destroy(&model);
-  ck_assert_ok(overlap_model_create(&model, "clip"));
+  ck_assert_ok(overlap_models_create(&model, "clip"));
   ck_assert_ok(app_evaluation_card_read(&model, "clip", &card));
   ck_assert_str_eq(card.family, "clip");
   ck_assert_int_eq((int)card.parameters, 0);

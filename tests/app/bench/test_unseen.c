@@ -7,7 +7,7 @@
 
 #include "app/bench/unseen/path.h"
 #include "base/vec3.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 enum { PLACES = 48 };
 
@@ -15,8 +15,8 @@ static AppUnseenErrors measure(int index, const char *name) {
   AppUnseenMesh mesh;
   AppUnseenErrors errors;
   OverlapModel model, clip;
-  ck_assert_ok(overlap_model_create(&model, name));
-  ck_assert_ok(overlap_model_create(&clip, "clip"));
+  ck_assert_ok(overlap_models_create(&model, name));
+  ck_assert_ok(overlap_models_create(&clip, "clip"));
   ck_assert_ok(app_unseen_mesh_create(&mesh, &app_unseen_cases[index], 9901));
   ck_assert_ok(app_unseen_path_measure(&app_unseen_cases[index], &mesh, &model, &clip, PLACES, &errors));
   app_unseen_mesh_destroy(&mesh);

@@ -139,11 +139,9 @@ static const Wrong wrong[] = {
     {TIME BODY "contact: {potential: nodel}\n", "s.yaml:3:22: contact.potential: expected one of nodal, "
                                                 "field, found the text 'nodel'; "
                                                 "did you mean 'nodal'?"},
-    {TIME BODY "contact: {net: a.safetensors}\n",
-     "s.yaml:3:16: contact.net: expected a mapping {key: value}, found the text 'a.safetensors'; write the "
-     "weights"},
-    {TIME BODY "contact: {net: {weights: geo}}\n",
-     "s.yaml:3:17: contact.net.weights: there is no such key any more; write the weights"},
+    {TIME BODY "contact: {net: {ghosts: keep}}\n",
+     "s.yaml:3:11: contact.net: there is no such key any more; write into contact.overlap, before the model, "
+     "what it asks for: keep="},
     {TIME BODY "contact: {overlap: clop}\n", "s.yaml:3:20: contact.overlap: expected one of clip"},
     {TIME BODY "contact: {potential: true}\n",
      "s.yaml:3:22: contact.potential: expected one of nodal, field, found true"},

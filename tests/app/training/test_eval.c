@@ -294,16 +294,15 @@ END_TEST
 
 // The bound is the network's, whatever is asked of it; what is handed on is clipping's, without error.
 START_TEST(a_smaller_doubt_hands_more_on_and_errs_less) {
-  static const double doubts[] = {1e-9, 0.005, 0.01, 1e9};
+  static const char *const words[] = {"hybrid:1e-9=geo-small", "hybrid", "hybrid:.01=geo-small",
+                                      "hybrid:1e9=geo-small"};
   enum { COUNT = 3000, DOUBTS = 4 };
   DatagenPairs pairs;
   AppEvaluation found[DOUBTS];
   load("scene", NULL, COUNT, &pairs);
   for (int k = 0; k < DOUBTS; k++) {
     OverlapModel model;
-    OverlapOptions options = overlap_options_default();
-    options.doubt = doubts[k];
-    ck_assert_ok(app_evaluation_model_open_with(&model, "hybrid", &options));
+    ck_assert_ok(app_evaluation_model_open(&model, words[k]));
     ck_assert(app_evaluation_bounds_are_told(&model));
     found[k] = evaluate(&model, &pairs, COUNT);
     overlap_model_destroy(&model);

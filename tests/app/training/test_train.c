@@ -18,6 +18,7 @@
 #include "base/memory.h"
 #include "overlap/geo/geo.h"
 #include "overlap/geo/network.h"
+#include "overlap/models.h"
 #include "overlap/weights.h"
 
 static char directory[64];
@@ -355,7 +356,7 @@ START_TEST(trained_bound_holds_of_other_pairs) {
   snprintf(command, sizeof command, "cp '%.150s' '%s'", network, path_in("t.safetensors"));
   ck_assert_int_eq(system(command), 0);
   OverlapModel hybrid;
-  ck_assert_ok(overlap_model_create_with(&hybrid, "hybrid", path_in("t.safetensors"), NULL));
+  ck_assert_ok(overlap_models_create_with(&hybrid, "hybrid", path_in("t.safetensors"), NULL));
   DatagenPairs pairs;
   size_t count;
   AppSourceDef def = {.law = "scene", .mix = "scene=1", .count = 4000, .seed = 13};

@@ -8,7 +8,7 @@
 
 #include "base/random.h"
 #include "folder.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 #include "suite.h"
 
 // Differences of fourth order. Weights into which whitening was folded cancel: a longer step is no small one.
@@ -25,7 +25,7 @@ typedef struct Weights {
 static inline Weights weights_open(const char *name) {
   Weights weights;
   Random random = random_seeded(3, 0);
-  ck_assert_ok(overlap_model_create(&weights.model, name));
+  ck_assert_ok(overlap_models_create(&weights.model, name));
   weights.count = weights.model.ops->training->count(weights.model.self);
   weights.own = calloc(weights.count, sizeof(double));
   weights.way = calloc(weights.count, sizeof(double));

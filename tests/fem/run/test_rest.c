@@ -13,6 +13,7 @@
 #include "fem/effect/contact/contact.h"
 #include "fem/run/rest/rest.h"
 #include "fem/scene/drive.h"
+#include "overlap/models.h"
 
 // ---- contact_system_hold
 
@@ -37,7 +38,7 @@ static Pile *pile(void) {
   p->rest = blocks_copy(&p->blocks);
   p->still = calloc(3 * (size_t)p->blocks.vertex_count, sizeof(double));
   ck_assert_ptr_nonnull(p->still);
-  ck_assert_ok(overlap_model_create(&p->model, "clip"));
+  ck_assert_ok(overlap_models_create(&p->model, "clip"));
   ContactSystemDef def = blocks_def(&p->blocks, p->rest, &p->model);
   def.shapes = &p->ground, def.shape_count = 1, def.margin = 0.2;
   ck_assert_ok(contact_system_create(&p->system, &def));

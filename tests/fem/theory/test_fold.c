@@ -8,7 +8,7 @@
 #include "base/vec3.h"
 #include "contact/search/bounds.h"
 #include "fem/model/tolerance.h"
-#include "overlap/model.h"
+#include "overlap/models.h"
 
 static bool share_vertex(const int a[4], const int b[4]) {
   for (int v = 0; v < 16; v++)
@@ -28,7 +28,7 @@ static double shared_volume(const SceneRun *run, int frame) {
   const FemModel *model = &run->model;
   OverlapModel clip;
   double sum = 0;
-  ck_assert_ok(overlap_model_create(&clip, "clip"));
+  ck_assert_ok(overlap_models_create(&clip, "clip"));
   for (int i = 0; i < model->tet_count; i++)
     for (int j = i + 1; j < model->tet_count; j++) {
       double x[24], volume;

@@ -21,7 +21,8 @@ enum {
   SPOILS,
   PULLS,
   PULLS_WRONG,
-  KNOWS
+  KNOWS,
+  DOUBTS
 };
 
 static size_t told_count; // of pairs whose origins were as they should be
@@ -69,6 +70,11 @@ static int evaluate(void *self, const TetlapModelBatch *batch, char *message, si
     batch->volume[i] = 1e-9 * (rest[0] < rest[1] ? rest[0] : rest[1]);
     for (int c = 0; batch->centroid && c < 3; c++) batch->centroid[3 * i + c] = batch->pairs[24 * i + c];
   }
+  // As tests/overlap/test_wrap.c has it.
+  for (size_t i = 0; WRONG == DOUBTS && batch->doubt && i < batch->count; i++) {
+    const double x = batch->pairs[24 * i];
+    batch->doubt[i] = x < 0.3 ? 0 : x > 0.6 ? INFINITY : 7e-6;
+  }
   if (WRONG == SPOILS) memset((double *)batch->pairs, 0xFF, 24 * batch->count * sizeof(double));
   if (WRONG != EVALUATE_FAILS) return 0;
   snprintf(message, size, "the card fell out");
@@ -99,6 +105,7 @@ const TetlapModel *tetlap_model(void) {
       .abi = WRONG == OTHER_ABI ? 99 : TETLAP_MODEL_ABI,
       .name = "wrong",
       .gives = WRONG == PULLS || WRONG == PULLS_WRONG ? TETLAP_MODEL_CENTROID | TETLAP_MODEL_CURVATURE
+               : WRONG == DOUBTS                      ? TETLAP_MODEL_DOUBT
                : WRONG == KNOWS                       ? TETLAP_MODEL_CENTROID | TETLAP_MODEL_ORIGINS
                                                       : TETLAP_MODEL_GRADIENT,
       .open = open_it,

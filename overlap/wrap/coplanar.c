@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "overlap/wrap/coplanar.h"
+
+#include <string.h>
+
+#include "overlap/geo/coplanar.h"
+#include "overlap/wrap/mixture.h"
+
+enum { SIZE = OVERLAP_PAIR_SIZE };
+
+static Status share(const OverlapWrap *wrap, const OverlapBatch *portion, int order,
+                    OverlapWrapShares *shares) {
+  (void)wrap;
+  for (int i = 0; i < portion->pair_count; i++) {
+    OverlapGeoFrame frame;
+    OverlapGeoCoplanar coplanar;
+    shares->value[i] = 0;
+    if (overlap_geo_frame(&frame, portion->pairs + SIZE * i) != OVERLAP_GEO_INSIDE) continue;
+    overlap_geo_coplanar_find(&frame.projector, &coplanar);
+    shares->value[i] = coplanar.share;
+    if (coplanar.share > 0 && order > 0)
+      overlap_geo_coplanar_pull(&frame, &coplanar, shares->gradient[i],
+                                order > 1 ? shares->hessian[i] : NULL);
+  }
+  return STATUS_OK;
+}
+
+static const OverlapWrapMixture mixture = {.has_clip = true, .share = share};
+
+static Status eval(OverlapWrap *wrap, const OverlapBatch *batch) {
+  return overlap_wrap_mixture_eval(wrap, &mixture, batch);
+}
+
+static Status eval_slopes(const OverlapWrap *wrap, int count, const double *pairs, double *slopes) {
+  return overlap_wrap_mixture_slopes(wrap, &mixture, count, pairs, slopes);
+}
+
+const OverlapWrapKind overlap_wrap_coplanar = {
+    .name = "coplanar",
+    .help = "clip has a part in pairs with nearly coplanar faces",
+    .eval = eval,
+    .eval_slopes = eval_slopes,
+    .centroid = OVERLAP_WRAP_MIXED_CENTROID,
+};

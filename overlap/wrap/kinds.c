@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "overlap/wrap/kinds.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "overlap/wrap/both.h"
+#include "overlap/wrap/coplanar.h"
+#include "overlap/wrap/cut.h"
+#include "overlap/wrap/doubt.h"
+#include "overlap/wrap/fade.h"
+#include "overlap/wrap/placed.h"
+
+static const OverlapWrapKind *const kinds[] = {
+    &overlap_wrap_cut,      &overlap_wrap_keep,  &overlap_wrap_fade,   &overlap_wrap_both,
+    &overlap_wrap_coplanar, &overlap_wrap_doubt, &overlap_wrap_placed, &overlap_wrap_derived,
+};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+static Status fail_unknown(const char *word, int length) {
+  char known[256] = "";
+  size_t used = 0;
+  for (int k = 0; k < KINDS; k++)
+    text_append(known, sizeof known, &used, "%s%s", k ? ", " : "", kinds[k]->name);
+  return status_fail(STATUS_INPUT,
+                     "%s: '%.*s=' is none of what stands before a model: %s. A file's own name may not "
+                     "begin so: write ./%s",
+                     word, length, word, known, word);
+}
+
+Status overlap_wrap_kinds_find(const char *word, const OverlapWrapKind **kind, double *number) {
+  const size_t length = strcspn(word, ":=");
+  *number = word[length] == ':' ? strtod(word + length + 1, NULL) : NAN;
+  for (int k = 0; k < KINDS; k++)
+    if (strlen(kinds[k]->name) == length && strncmp(kinds[k]->name, word, length) == 0) {
+      *kind = kinds[k];
+      return STATUS_OK;
+    }
+  return fail_unknown(word, (int)length);
+}
