@@ -246,14 +246,23 @@ static Status search_interface(const Search *search, int f, ContactFound *found)
   return search_with(search, f, layout->margin, found);
 }
 
-// Interfaces are searched side by side. A message belongs to the thread that failed: this one searches the
-// first that failed again to have it.
+static bool find(ContactCandidates *candidates, const Search *search, int f) {
+  candidates->found[f].status = search_interface(search, f, &candidates->found[f]);
+  return candidates->found[f].status == STATUS_OK;
+}
+
+// Interfaces are searched side by side, a few one by one on all threads; no region encloses these, as libgomp
+// makes new threads for each region within another. A message belongs to the thread that failed: this one
+// searches the first that failed again to have it.
 static Status search_interfaces(ContactCandidates *candidates, const Search *search) {
   int count = search->layout->interface_count, first_failed = count;
-#pragma omp parallel for schedule(dynamic) reduction(min : first_failed) if (count > FEW_INTERFACES_COUNT)
-  for (int f = 0; f < count; f++) {
-    candidates->found[f].status = search_interface(search, f, &candidates->found[f]);
-    if (candidates->found[f].status && f < first_failed) first_failed = f;
+  if (count <= FEW_INTERFACES_COUNT) {
+    for (int f = count - 1; f >= 0; f--)
+      if (!find(candidates, search, f)) first_failed = f;
+  } else {
+#pragma omp parallel for schedule(dynamic) reduction(min : first_failed)
+    for (int f = 0; f < count; f++)
+      if (!find(candidates, search, f) && f < first_failed) first_failed = f;
   }
   if (first_failed == count) return STATUS_OK;
   ContactFound *found = &candidates->found[first_failed];

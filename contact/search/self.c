@@ -150,7 +150,7 @@ static void compact(ContactBoxPairs *found) {
 // Turns pairs of boxes into pairs i < j of tetrahedra that may meet.
 static void keep_tets(Search *search) {
   long long count = (long long)search->found.count;
-#pragma omp parallel for schedule(static) if (count > 512)
+#pragma omp parallel for schedule(dynamic, 128) if (count > 512)
   for (long long k = 0; k < count; k++) {
     int *pair = search->found.pairs[k], i = search->outer[pair[0]], j = search->tet_begin + pair[1];
     const int *a = search->def->tets[i], *b = search->def->tets[j];
@@ -193,7 +193,7 @@ static bool is_whole(const ContactMesh *mesh, int cell) {
 static void keep_cells(Search *search) {
   const ContactMesh *mesh = search->mesh;
   long long count = (long long)search->found.count;
-#pragma omp parallel for schedule(static) if (count > 512)
+#pragma omp parallel for schedule(dynamic, 128) if (count > 512)
   for (long long k = 0; k < count; k++) {
     int *pair = search->found.pairs[k], i = pair[0], j = pair[1];
     bool is_known = is_whole(mesh, i) && is_whole(mesh, j);
