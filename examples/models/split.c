@@ -22,8 +22,9 @@ static double with(Point t[4], int v, Point w) {
   return volume_of(s);
 }
 
-/* Adds V and V x of the part of `t` on the inner side of the faces f, f + 1, ... of `b`. */
-static void add(Point t[4], Point b[4], int f, double sums[4]) {
+/* Adds V and V x of the part of `t` on the inner side of the faces f, f + 1, ... of `b`. A plane cuts at most
+ * four edges; what rounding would cut again stays whole. */
+static void add(Point t[4], Point b[4], int f, int cuts, double sums[4]) {
   double v = volume_of(t), h[4];
   if (f == 4) {
     sums[0] += fabs(v);
@@ -31,17 +32,17 @@ static void add(Point t[4], Point b[4], int f, double sums[4]) {
     return;
   }
   for (int i = 0; i < 4; i++) h[i] = with(b, f, t[i]) / volume_of(b);
-  for (int i = 0; i < 4; i++)
+  for (int i = 0; i < 4 && cuts > 0; i++)
     for (int j = 0; j < 4; j++) {
       if (!(h[i] > 1e-13 && h[j] < -1e-13)) continue; /* the edge is cut: two halves, each looked at again */
       Point cut, half[2][4];
       for (int c = 0; c < 3; c++) cut[c] = (h[i] * t[j][c] - h[j] * t[i][c]) / (h[i] - h[j]);
       memcpy(half[0], t, sizeof half[0]), memcpy(half[1], t, sizeof half[1]);
       memcpy(half[0][i], cut, sizeof cut), memcpy(half[1][j], cut, sizeof cut);
-      add(half[0], b, f, sums), add(half[1], b, f, sums);
+      add(half[0], b, f, cuts - 1, sums), add(half[1], b, f, cuts - 1, sums);
       return;
     }
-  if (h[0] + h[1] + h[2] + h[3] > 0) add(t, b, f + 1, sums);
+  if (h[0] + h[1] + h[2] + h[3] > 0) add(t, b, f + 1, 4, sums);
 }
 
 static int evaluate(void *self, const TetlapModelBatch *batch, char *message, size_t size) {
@@ -50,7 +51,7 @@ static int evaluate(void *self, const TetlapModelBatch *batch, char *message, si
     Point pair[8];
     double sums[4] = {0};
     memcpy(pair, batch->pairs + 24 * i, sizeof pair);
-    add(pair, pair + 4, 0, sums);
+    add(pair, pair + 4, 0, 4, sums);
     batch->volume[i] = sums[0];
     for (int c = 0; batch->centroid && c < 3; c++) batch->centroid[3 * i + c] = sums[0] > 0 ? sums[1 + c] / sums[0] : 0;
   }
