@@ -7,6 +7,7 @@
 
 #include "app/gradient/names.h"
 #include "base/text.h"
+#include "fem/gradient/contact/pressure.h"
 
 enum { MAX_WORDS = 5, WORD_SIZE = 128 };
 
@@ -15,6 +16,8 @@ const char app_gradient_quantities[] = "displacement:BODY:AXIS, "
                                        "position:BODY:VERTEX:AXIS, "
                                        "force:BODY:AXIS, "
                                        "force:BODY:OTHER:AXIS, "
+                                       "patch:PROBE:AXIS, "
+                                       "pressure:PROBE, peak:PROBE, "
                                        "moment:BODY:AXIS, "
                                        "moment:BODY:OTHER:AXIS, "
                                        "reaction:BODY:fixed[N]:AXIS, "
@@ -124,6 +127,10 @@ static Status read_words(const FemModel *model, const char *text, int count, cha
     quantity->kind = FEM_QUANTITY_PROBE;
     return find_probe(model, words[1], &quantity->body);
   }
+  if (strcmp(words[0], "patch") == 0 && count == 3) {
+    quantity->kind = FEM_QUANTITY_PATCH;
+    return find_probe(model, words[1], &quantity->body);
+  }
   if (strcmp(words[0], "position") == 0 && count == 4 && read_count(words[2], &quantity->vertex)) {
     quantity->kind = FEM_QUANTITY_POSITION;
     return find_body(model, words[1], &quantity->body);
@@ -143,6 +150,12 @@ Status app_gradient_read_quantity(const FemModel *model, const char *text, FemQu
   *quantity = (FemQuantity){.other = -1};
   if (count > MAX_WORDS) return fail_quantity(text);
   if (strcmp(words[0], "energy") == 0) return read_energy(text, count, words, quantity);
+  bool is_peak = strcmp(words[0], "peak") == 0;
+  if ((is_peak || strcmp(words[0], "pressure") == 0) && count == 2) {
+    quantity->kind = FEM_QUANTITY_PRESSURE;
+    quantity->power = is_peak ? FEM_PRESSURE_PEAK : FEM_PRESSURE_MEAN;
+    return status_prefix(find_probe(model, words[1], &quantity->body), "%s", text);
+  }
   if (!read_axis(words[count - 1], &quantity->component)) return fail_quantity(text);
   return status_prefix(read_words(model, text, count, words, quantity), "%s", text);
 }

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/gravity.h"
+#include "fem/gradient/contact/pressure.h"
 #include "fem/model/limits.h"
 
 // ---- What there is.
@@ -51,6 +52,11 @@ Status fem_quantity_check(const FemModel *model, const FemQuantity *quantity) {
   case FEM_QUANTITY_FORCE:
   case FEM_QUANTITY_MOMENT:
     return check_contact(model, quantity);
+  case FEM_QUANTITY_PATCH:
+    if (model->scene->contact.is_on) return STATUS_OK;
+    return status_fail(STATUS_INPUT, "the scene has no contact");
+  case FEM_QUANTITY_PRESSURE:
+    return fem_pressure_check(model);
   case FEM_QUANTITY_REACTION:
     if (is_held(model, quantity->held)) return STATUS_OK;
     return status_fail(STATUS_INPUT, "nothing is held there");
@@ -66,8 +72,11 @@ Status fem_quantity_check(const FemModel *model, const FemQuantity *quantity) {
 const char *fem_quantity_unit(const FemQuantity *quantity) {
   switch (quantity->kind) {
   case FEM_QUANTITY_FORCE:
+  case FEM_QUANTITY_PATCH:
   case FEM_QUANTITY_REACTION:
     return "N";
+  case FEM_QUANTITY_PRESSURE:
+    return "Pa";
   case FEM_QUANTITY_MOMENT:
     return "N m";
   case FEM_QUANTITY_ENERGY:
@@ -125,7 +134,11 @@ static double change_place(const FemQuantity *quantity, const FemTangent *tangen
 
 // ---- Forces of contact: g = Σ w · f over the vertices of one side.
 
-static bool is_of(const FemQuantity *quantity, const ContactInterfaceDef *interface) {
+static bool is_of(const FemQuantity *quantity, const FemModel *model, const ContactInterfaceDef *interface) {
+  if (quantity->kind == FEM_QUANTITY_PATCH) {
+    int body = model->probes[quantity->body].body;
+    return body == interface->a || body == interface->b;
+  }
   if (interface->a == interface->b) return false;
   int other = quantity->body == interface->a ? interface->b : interface->a;
   bool is_side = quantity->body == interface->a || quantity->body == interface->b;
@@ -147,9 +160,21 @@ static Vec3 unit_of(const FemQuantity *quantity) {
   return vec3_at(unit);
 }
 
+// The same of a probe's vertices.
+static void weigh_patch(const FemQuantity *quantity, const FemTangent *tangent, double *w) {
+  const FemProbe *probe = &tangent->system->model->probes[quantity->body];
+  memset(w, 0, values_of(tangent) * sizeof *w);
+  for (int k = 0; k < probe->vertex_count; k++)
+    w[3 * (size_t)probe->vertices[k] + (size_t)quantity->component] = 1;
+}
+
 // w (vertex_count, 3) of an interface.
 static void weigh(const FemQuantity *quantity, const FemTangent *tangent, int interface, double *w) {
   double sign;
+  if (quantity->kind == FEM_QUANTITY_PATCH) {
+    weigh_patch(quantity, tangent, w);
+    return;
+  }
   const FemModelBody *body =
       summed_body(quantity, tangent->system->model, fem_tangent_interface(tangent, interface), &sign);
   Vec3 unit = vec3_scale(sign, unit_of(quantity));
@@ -218,7 +243,7 @@ static Status evaluate_contact(const FemQuantity *quantity, const FemTangent *ta
   Status status = create_scratch(&scratch, tangent);
   *value = 0;
   for (int i = 0; i < tangent->interface_count && !status; i++)
-    if (is_of(quantity, fem_tangent_interface(tangent, i)))
+    if (is_of(quantity, tangent->system->model, fem_tangent_interface(tangent, i)))
       status = evaluate_interface(quantity, tangent, i, weight, &scratch, value, slope);
   destroy_scratch(&scratch);
   return status;
@@ -229,7 +254,7 @@ static Status change_contact(const FemQuantity *quantity, const FemTangent *tang
   Scratch scratch;
   Status status = create_scratch(&scratch, tangent);
   for (int i = 0; i < tangent->interface_count && !status; i++) {
-    if (!is_of(quantity, fem_tangent_interface(tangent, i))) continue;
+    if (!is_of(quantity, tangent->system->model, fem_tangent_interface(tangent, i))) continue;
     memset(scratch.force, 0, values_of(tangent) * sizeof(double));
     status = fem_change_add_contact(change, tangent, i, scratch.force);
     weigh(quantity, tangent, i, scratch.w);
@@ -237,6 +262,41 @@ static Status change_contact(const FemQuantity *quantity, const FemTangent *tang
   }
   destroy_scratch(&scratch);
   return status;
+}
+
+// ---- Pressures.
+
+static FemPressure pressure_of(const FemQuantity *quantity, int interface, double weight, double *slope) {
+  return (FemPressure){.probe = quantity->body,
+                       .power = quantity->power,
+                       .interface = interface,
+                       .weight = weight,
+                       .slope = slope};
+}
+
+static Status evaluate_pressure(const FemQuantity *quantity, const FemTangent *tangent, double weight,
+                                double *value, double *slope) {
+  FemPressure pressure = pressure_of(quantity, CONTACT_ALL_INTERFACES, weight, slope);
+  if (tangent->answers) pressure.answers = tangent->answers->by;
+  return fem_pressure_find(&pressure, tangent, value);
+}
+
+// An obstacle that moves changes it as bodies that moved the other way would.
+static Status change_pressure(const FemQuantity *quantity, const FemTangent *tangent, FemChange *change,
+                              double *derivative) {
+  for (int i = 0; i < tangent->interface_count; i++) {
+    bool moves = fem_change_moves(change, tangent, i);
+    double value;
+    if (!moves && change->rates[i] == 0) continue;
+    memset(change->contact, 0, values_of(tangent) * sizeof(double));
+    FemPressure pressure = pressure_of(quantity, i, 1, change->contact);
+    TRY(fem_pressure_find(&pressure, tangent, &value));
+    *derivative += change->rates[i] * pressure.stiffness;
+    if (!moves) continue;
+    fem_change_field(change, tangent, i, change->product);
+    *derivative -= dot(tangent, change->product, change->contact);
+  }
+  return STATUS_OK;
 }
 
 // ---- Reactions: g = −Σ f over prescribed coordinates.
@@ -350,8 +410,11 @@ Status fem_quantity_evaluate(const FemQuantity *quantity, const FemTangent *tang
                              double *value, double *slope) {
   switch (quantity->kind) {
   case FEM_QUANTITY_FORCE:
+  case FEM_QUANTITY_PATCH:
   case FEM_QUANTITY_MOMENT:
     return evaluate_contact(quantity, tangent, weight, value, slope);
+  case FEM_QUANTITY_PRESSURE:
+    return evaluate_pressure(quantity, tangent, weight, value, slope);
   case FEM_QUANTITY_REACTION:
     return evaluate_reaction(quantity, tangent, weight, value, slope);
   case FEM_QUANTITY_ENERGY:
@@ -370,8 +433,11 @@ Status fem_quantity_change(const FemQuantity *quantity, const FemTangent *tangen
   *derivative = 0;
   switch (quantity->kind) {
   case FEM_QUANTITY_FORCE:
+  case FEM_QUANTITY_PATCH:
   case FEM_QUANTITY_MOMENT:
     return change_contact(quantity, tangent, change, derivative);
+  case FEM_QUANTITY_PRESSURE:
+    return change_pressure(quantity, tangent, change, derivative);
   case FEM_QUANTITY_REACTION:
     return change_reaction(quantity, tangent, change, derivative);
   case FEM_QUANTITY_ENERGY:

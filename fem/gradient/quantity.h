@@ -10,6 +10,8 @@ typedef enum FemQuantityKind {
   FEM_QUANTITY_PROBE,        // the same of a probe [m]
   FEM_QUANTITY_POSITION,     // of a vertex of a body [m]
   FEM_QUANTITY_FORCE,        // of contact on a body or an obstacle, by another or by all [N]
+  FEM_QUANTITY_PATCH,        // the same on the vertices of a probe [N]
+  FEM_QUANTITY_PRESSURE,     // on them, by fem/gradient/contact/pressure.h [Pa]
   FEM_QUANTITY_MOMENT,       // of those forces about the origin [N m]
   FEM_QUANTITY_REACTION,     // of what holds or drives a body, as in history.csv [N]
   FEM_QUANTITY_ENERGY,       // [J]
@@ -19,11 +21,12 @@ enum { FEM_QUANTITY_ELASTIC = 1, FEM_QUANTITY_CONTACT = 2, FEM_QUANTITY_GRAVITY 
 
 typedef struct FemQuantity {
   FemQuantityKind kind;
-  int body;   // of displacement and position; of force and moment the party (contact's order), of a probe its
-              // number
+  int body;   // of displacement and position; of force and moment the party (contact's order), of a probe, a
+              // patch and a pressure the probe's number
   int other;  // the party that presses; −1: all
   int vertex; // of a position, in the body's mesh
   int component;                // x, y, z
+  int power;                    // m of a pressure
   int energies;                 // those that are summed
   const FemConstraintDef *held; // of a reaction, borrowed from the scene
 } FemQuantity;

@@ -23,7 +23,8 @@ typedef struct Options {
 static const AppOption option_table[] = {
     {"of", 0, "QUANTITY",
      "Differentiate it: displacement:BODY:AXIS, probe:NAME:AXIS, position:BODY:VERTEX:AXIS, "
-     "force:BODY[:OTHER]:AXIS, moment:BODY[:OTHER]:AXIS, reaction:BODY:fixed[N]:AXIS, energy[:KIND], "
+     "force:BODY[:OTHER]:AXIS, patch:PROBE:AXIS, pressure:PROBE, peak:PROBE, moment:BODY[:OTHER]:AXIS, "
+     "reaction:BODY:fixed[N]:AXIS, energy[:KIND], "
      "sum:FILE, misfit:FILE; may be repeated. QUANTITY@TIME: at that time [s]",
      1, CLI_REPEATED, CLI_TO(Options, words.of), .most = APP_GRADIENT_MOST, .example = "--of",
      .count_offset = offsetof(Options, words.of_count)},

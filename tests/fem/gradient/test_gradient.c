@@ -266,6 +266,61 @@ START_TEST(blocks_pressed_by_a_law_agree_with_differences_of_runs) {
 }
 END_TEST
 
+static const char *const patched[] = {NULL, "contact.overlap=geo-small"};
+
+START_TEST(pressures_of_two_blocks_agree_with_differences_of_runs) {
+  const Asked asked = {.scene = "gradient_blocks",
+                       .setting = patched[_i],
+                       .of = {"pressure:patch", "peak:patch", "patch:patch:z"},
+                       .by = {"bodies.lower.material.young", "bodies.upper.material.poisson",
+                              "contact.stiffness", "bodies.upper.loads[1].pressure",
+                              "bodies.upper.place.translate[0]"}};
+  check_against_runs(&asked);
+}
+END_TEST
+
+START_TEST(pressures_of_shapes_agree_with_differences_of_runs) {
+  const Asked shapes = {.scene = "gradient_shapes",
+                        .of = {"pressure:below", "peak:below", "patch:below:x", "pressure:above",
+                               "peak:above", "patch:above:x"},
+                        .by = {BODY "material.poisson", "obstacles.bar.motion.spin",
+                               "obstacles.bar.motion.velocity[2]", "obstacles.roll.motion.table[1][3]",
+                               "obstacles.plate.motion.spin", "obstacles.plate.place.translate[0]",
+                               "obstacles.plate.place.translate[2]"}};
+  const Asked pairs = {.scene = "gradient_obstacles",
+                       .of = {"pressure:below", "peak:below", "patch:below:z"},
+                       .by = {BODY "material.young", "contact.stiffness", "contact.pairs[0].stiffness",
+                              "obstacles.floor.halfspace.point[2]", BODY "driven[0].velocity[2]"}};
+  check_against_runs(&shapes);
+  check_against_runs(&pairs);
+}
+END_TEST
+
+// An even pressure is mean and peak.
+START_TEST(pressures_are_those_of_the_force) {
+  const char *even = "time: {end: 1, static: true}\noutput: {frames: 1}\nbodies:\n"
+                     "  - name: block\n    mesh: {box: {size: [1, 1, 1], cells: 2}}\n"
+                     "    material: {law: linear, young: 1e6, poisson: 0, density: 1000}\n"
+                     "    loads: [{group: z_max, traction: [0, 0, -500]}]\n"
+                     "    fixed: [{group: z_min, components: [x, y]}]\n"
+                     "    probes: [{name: below, group: z_min}]\n"
+                     "obstacles: [{name: floor, halfspace: {point: [0, 0, 0], normal: [0, 0, 1]}}]\n"
+                     "contact: {stiffness: 1e8}\n";
+  const Asked asked = {.scene = even,
+                       .is_text = true,
+                       .of = {"pressure:below", "peak:below", "patch:below:z"},
+                       .by = {"bodies.block.loads[0].traction[2]"}};
+  Answer answer;
+  ck_assert_ok(run(&asked, NULL, &answer));
+  // On one square metre, but for the overlap, 5e-6 m deep.
+  for (int g = 0; g < 3; g++) {
+    ck_assert_near(answer.gradient.values[g], 500, 2e-5 * 500);
+    ck_assert_near(answer.gradient.derivatives[g], -1, 2e-5);
+  }
+  destroy(&answer);
+}
+END_TEST
+
 START_TEST(quadratic_elements_between_moving_shapes_agree_with_differences_of_runs) {
   const Asked asked = {.scene = "gradient_shapes",
                        .of = {"displacement:slab:z", "force:slab:bar:z", "force:plate:z", "moment:bar:y",
@@ -508,6 +563,9 @@ START_TEST(quantities_that_are_not_there_are_refused_by_name) {
                                          {"force:block:block:z", "name two"},
                                          {"force:block:wall:z", "there are block, far"},
                                          {"probe:top:z", "there are none"},
+                                         {"pressure:top", "there are none"},
+                                         {"peak:top:z", "none of the quantities"},
+                                         {"patch:top:z", "there are none"},
                                          {"reaction:block:fixed[1]:z", "has 1 such entries"},
                                          {"reaction:block:glued[0]:z", "not fixed[N]"},
                                          {"energy:kinetic", "none of the quantities"},
@@ -630,6 +688,9 @@ int main(void) {
   tcase_add_test(test_case, a_driven_slab_upon_obstacles_agrees_with_differences_of_runs);
   tcase_add_test(test_case, a_slab_pressed_by_laws_agrees_with_differences_of_runs);
   tcase_add_loop_test(test_case, blocks_pressed_by_a_law_agree_with_differences_of_runs, 0, 3);
+  tcase_add_loop_test(test_case, pressures_of_two_blocks_agree_with_differences_of_runs, 0, 2);
+  tcase_add_test(test_case, pressures_of_shapes_agree_with_differences_of_runs);
+  tcase_add_test(test_case, pressures_are_those_of_the_force);
   tcase_add_test(test_case, quadratic_elements_between_moving_shapes_agree_with_differences_of_runs);
   tcase_add_test(test_case, a_chosen_stiffness_that_follows_agrees_with_differences_of_runs);
   tcase_add_test(test_case, a_chosen_stiffness_that_is_kept_is_another_derivative);

@@ -8,8 +8,9 @@ START_TEST(a_block_that_is_rubbed_agrees_with_differences_of_replays) {
                        .setting = "time.end=1",
                        .least_steps = 7,
                        .least_switches = 20,
-                       .of = {"displacement:lower:x", "probe:top:x", "force:upper:lower:x",
-                              "reaction:upper:driven[0]:y", "energy", "force:upper:lower:x@0.6"},
+                       .of = {"displacement:lower:x", "probe:top:x", "force:upper:lower:x", "pressure:top",
+                              "patch:top:x", "reaction:upper:driven[0]:y", "energy",
+                              "force:upper:lower:x@0.6"},
                        .by = {"bodies.lower.material.young", "bodies.upper.material.poisson",
                               "contact.friction", "contact.stiffness", "bodies.upper.driven[0].table[2][1]",
                               "bodies.upper.driven[0].table[1][3]", "bodies.upper.place.translate[1]"}};
@@ -25,7 +26,7 @@ START_TEST(a_block_that_is_rubbed_by_learned_overlaps_agrees_with_differences_of
                        .overlap = learned[_i],
                        .least_steps = 7,
                        .least_switches = 20,
-                       .of = {"probe:top:x", "force:upper:lower:x", "reaction:upper:driven[0]:y"},
+                       .of = {"probe:top:x", "force:upper:lower:x", "reaction:upper:driven[0]:y", "peak:top"},
                        .by = {"bodies.lower.material.young", "contact.friction", "contact.stiffness",
                               "bodies.upper.driven[0].table[1][3]", "bodies.upper.place.translate[1]"}};
   check_against_replays(&asked);
@@ -60,6 +61,7 @@ static void check_weights(const char *scene, const char *setting, const char *of
 
 START_TEST(slopes_by_weights_agree_with_differences_of_replays) {
   check_weights("gradient_rub", "time.end=1", "force:upper:lower:x");
+  check_weights("gradient_rub", "time.end=1", "peak:top");
   check_weights("gradient_motion", "time.end=0.06", "displacement:upper:z");
   check_weights("gradient_slide", "time.end=0.02", "displacement:upper:x");
 }
