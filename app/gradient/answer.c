@@ -6,6 +6,7 @@
 #include "app/gradient/goal.h"
 #include "app/gradient/parameter.h"
 #include "app/gradient/run.h"
+#include "base/log.h"
 
 static Status prepare(AppGradientAnswer *answer, const FemModel *model, const AppGradientWords *words) {
   double at = words->at > 0 ? words->at : INFINITY;
@@ -31,10 +32,26 @@ static bool is_taken(const AppGradientAnswer *answer, const FemRunProgress *prog
   return is_due && progress->time > answer->gradient.time;
 }
 
+static double megabytes_of(const AppGradientAnswer *answer) {
+  static const double MEGABYTE = 1e6;
+  return (double)answer->steps.bytes / MEGABYTE;
+}
+
+// A replay that would keep too much is refused as soon as the run shows it.
+static Status add_step(AppGradientAnswer *answer, const FemRunProgress *progress) {
+  TRY(fem_replay_steps_add(&answer->steps, progress->system));
+  double kept = megabytes_of(answer), most = answer->most_megabytes;
+  if (!(most > 0 && kept > most)) return STATUS_OK;
+  return status_fail(
+      STATUS_INPUT,
+      "--memory: up to t = %.6g s, %d steps, a replay keeps %.4g MB, more than %.4g MB; allow more, "
+      "take goals at an earlier time (--at), or longer steps (time.tolerance, output.frames)",
+      progress->time, answer->steps.count - 1, kept, most);
+}
+
 static Status at_step(void *observer, const FemRunProgress *progress) {
   AppGradientAnswer *answer = observer;
-  if (fem_gradient_is_path(progress->system->model))
-    return fem_replay_steps_add(&answer->steps, progress->system);
+  if (fem_gradient_is_path(progress->system->model)) return add_step(answer, progress);
   if (!is_taken(answer, progress)) return STATUS_OK;
   return fem_gradient_find(&answer->gradient, progress->system, &answer->def);
 }
@@ -45,9 +62,12 @@ Status app_gradient_answer(AppGradientAnswer *answer, const FemModel *model, con
   FemRunOptions run = {.observe = at_step, .observer = answer, .stop = stop};
   *answer = (AppGradientAnswer){0};
   TRY(prepare(answer, model, words));
+  answer->most_megabytes = words->most_megabytes;
   Status status = app_gradient_run(model, &answer->def, &run, &result);
-  if (!status && fem_gradient_is_path(model))
+  if (!status && fem_gradient_is_path(model)) {
+    log_info("a replay of %d steps keeps %.4g MB", answer->steps.count - 1, megabytes_of(answer));
     status = fem_path_differentiate(&answer->gradient, model, &answer->def, &answer->steps);
+  }
   if (!status && !answer->gradient.values)
     status = status_fail(STATUS_SOLVER, "the run ended before a goal was taken: no gradient");
   fem_run_result_destroy(&result);

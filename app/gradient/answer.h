@@ -13,9 +13,10 @@ typedef struct AppGradientWords {
   const char *of[APP_GRADIENT_MOST]; // app/gradient/goal.h
   const char *by[APP_GRADIENT_MOST]; // app/gradient/parameter.h
   int of_count, by_count;
-  double at;       // when goals are taken that name no time [s]; 0: at the run's end
-  bool by_weights; // of the overlap model's network, too
-  bool is_total;   // a contact stiffness that is chosen follows E and ν
+  double at;             // when goals are taken that name no time [s]; 0: at the run's end
+  double most_megabytes; // that the replay of a path may keep; 0: what there is
+  bool by_weights;       // of the overlap model's network, too
+  bool is_total;         // a contact stiffness that is chosen follows E and ν
 } AppGradientWords;
 
 typedef struct AppGradientAnswer {
@@ -23,6 +24,7 @@ typedef struct AppGradientAnswer {
   FemParameter parameters[APP_GRADIENT_MOST];
   FemGradientDef def;
   FemReplaySteps steps; // of a path
+  double most_megabytes;
   FemGradient gradient;
 } AppGradientAnswer;
 

@@ -22,6 +22,13 @@ static const double INEXACT = 1e-4, WAY = 1e-7;
 
 // ---- Steps.
 
+// Of a step: u, v and histories; of a static scene, where it is looked for.
+static size_t bytes_of(const FemSystem *system) {
+  size_t numbers = (system->model->scene->is_static ? 3 : 2) * (size_t)system->numbering.count;
+  for (int e = 0; e < system->effect_count; e++) numbers += system->accepted.histories[e].count;
+  return numbers * sizeof(double);
+}
+
 static Status add(FemReplaySteps *steps, const FemSystem *system, const FemState *state) {
   size_t n = (size_t)system->numbering.count, count = (size_t)steps->count;
   bool is_static = system->model->scene->is_static;
@@ -35,6 +42,7 @@ static Status add(FemReplaySteps *steps, const FemSystem *system, const FemState
   }
   steps->unknown_count = (int)n;
   steps->times[steps->count++] = state ? state->time : 0;
+  steps->bytes += bytes_of(system);
   return STATUS_OK;
 }
 

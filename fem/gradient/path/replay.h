@@ -19,6 +19,7 @@ typedef struct FemReplaySteps {
   double *times; // [s], owned                                              (count)
   double *u;     // of a static scene, where each step's solution is looked for first; owned  (count, n)
   int count, unknown_count;
+  size_t bytes; // that a replay of them keeps: positions, velocities and histories of all, and u
   size_t time_capacity, capacity;
 } FemReplaySteps;
 
