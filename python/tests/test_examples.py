@@ -67,6 +67,15 @@ class Examples(unittest.TestCase):
         self.assertLess(np.linalg.norm(way[-1, :2] - throw.BOWL), 0.1)
         self.assertLess(np.linalg.norm(way[-1] - way[-6]), 0.05)  # in the last 0.1 s [m]
 
+    def test_a_gripper_lifts_with_less_force_by_its_gradient(self):
+        import grip_lightly
+
+        _, values, forces, above = grip_lightly.main(most=3)
+        self.assertLess(values[-1], 0.85 * values[0])
+        self.assertLess(forces[1].mean(), 0.85 * forces[0].mean())
+        self.assertTrue((forces[1][2:] > grip_lightly.needed(grip_lightly.TIMES[8::2])[2:]).all())
+        self.assertGreater(above[1], -1e-3)
+
     def test_the_ridges_of_a_seal_press_as_prescribed(self):
         import seal
 
