@@ -142,12 +142,9 @@ static double energy_of(const ContactLayout *layout, const ContactEvaluation *ev
   return sum;
 }
 
-// Whether P of the patch is the largest so far, or more energy is stored at about that; then `found` holds
-// the values and places.
-static bool is_largest(const FemAccuracy *accuracy, const ContactInterface *interface, int place, double time,
-                       double stored, FemAccuracyPair *found) {
-  *found = accuracy->pairs[place];
-  if (!(interface->pressed > found->pressed)) return interface->pressed > 0 && stored > GROWN * found->stored;
+// Whether P of the patch is the largest so far; then `found` holds the values and places.
+static bool is_largest(const ContactInterface *interface, double time, FemAccuracyPair *found) {
+  if (!(interface->pressed > found->pressed)) return false;
   found->pressed = interface->pressed;
   found->time = time;
   found->resultant = vec3_length(vec3_at(interface->force));
@@ -155,18 +152,23 @@ static bool is_largest(const FemAccuracy *accuracy, const ContactInterface *inte
   return true;
 }
 
-// Of the state in which most is stored.
-static void find_way(FemAccuracy *accuracy, const FemModel *model, const double *positions,
-                     const ContactInterfaceDef *interface, double energy, double elastic,
-                     FemAccuracyPair *found) {
+// Whether the two store more than ever, U and what is elastic in them; then `found` holds it. What all bodies
+// store is no less, and known.
+static bool is_fullest(FemAccuracy *accuracy, const FemModel *model, const double *positions,
+                       const ContactInterfaceDef *interface, double energy, double elastic,
+                       FemAccuracyPair *found) {
   const int bodies = model->scene->body_count;
+  if (!(energy + elastic > GROWN * found->stored)) return false;
   if (!accuracy->has_energies) share_energy(accuracy, model, positions, elastic);
   accuracy->has_energies = true;
-  found->elastic[0] = interface->a < bodies ? accuracy->energies[interface->a] : 0;
-  found->elastic[1] =
+  double first = interface->a < bodies ? accuracy->energies[interface->a] : 0;
+  double second =
       interface->b < bodies && interface->b != interface->a ? accuracy->energies[interface->b] : 0;
+  if (!(energy + first + second > GROWN * found->stored)) return false;
+  found->elastic[0] = first, found->elastic[1] = second;
   found->with = energy;
-  found->stored = energy + elastic;
+  found->stored = energy + first + second;
+  return true;
 }
 
 static Status estimate(const ContactLayout *layout, const ContactEvaluation *evaluation,
@@ -190,13 +192,13 @@ Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, const Con
   for (int p = 0; p < evaluation->patches.patch_count; p++) {
     const ContactPatch *patch = &evaluation->patches.patches[p];
     FemAccuracyPair *found = &accuracy->found[accuracy->found_count];
-    double energy = energy_of(layout, evaluation, patch);
-    if (!is_largest(accuracy, &evaluation->interfaces[patch->interface], patch->interface, state->time,
-                    energy + elastic, found))
-      continue;
-    if (energy + elastic > GROWN * found->stored)
-      find_way(accuracy, model, state->positions, &layout->interfaces[patch->interface], energy, elastic,
-               found);
+    const ContactInterface *interface = &evaluation->interfaces[patch->interface];
+    if (!(interface->pressed > 0)) continue;
+    *found = accuracy->pairs[patch->interface];
+    bool is_more = is_largest(interface, state->time, found);
+    is_more |= is_fullest(accuracy, model, state->positions, &layout->interfaces[patch->interface],
+                          energy_of(layout, evaluation, patch), elastic, found);
+    if (!is_more) continue;
     if (found->pressed > GROWN * found->estimated) TRY(estimate(layout, evaluation, patch, found));
     accuracy->places[accuracy->found_count++] = patch->interface;
   }

@@ -33,7 +33,7 @@
 #include "fem/effect/system.h"
 
 // Of one interface. An impact compresses the interface before the body behind it, so `give` is that of the
-// state in which most energy was stored while the two touched. Numbers only, for checkpoints.
+// state in which U + E_a + E_b was largest. Numbers only, for checkpoints.
 typedef struct FemAccuracyPair {
   double force;      // the largest resultant so far [N]
   double force_time; // when that was [s]
@@ -48,7 +48,7 @@ typedef struct FemAccuracyPair {
   double energy;     // U there [J]
   double elastic[2]; // E_a, E_b of the state in which most was stored [J]
   double with;       // U of that state [J]
-  double stored;     // U and the elastic energy of all bodies in that state [J]
+  double stored;     // U + E_a + E_b of that state [J]
   double edge;       // mean edge of the elements that take part [m]
   double rim;        // NaN: the potential is not `field`
 } FemAccuracyPair;

@@ -66,6 +66,12 @@ static const Case cases[] = {
     // An iterative solver, a network's volumes, several bodies.
     {"tests/scenes/stack.yaml", "--set solver.linear=pcg --set contact.overlap=clip --set time.end=0.05",
      "\"contact_pairs\": "},
+    // A body of two materials, one of which yields, with a line through both.
+    {"examples/25_plastic_bar.yaml",
+     "--set bodies.bar.mesh.box.cells=[8,2,2] --set 'bodies.bar.materials=[{halfspace: {point: [0.25, 0, 0], "
+     "normal: [-1, 0, 0]}, young: 5e9, poisson: 0.4, density: 1200}]' --set 'bodies.bar.lines=[{name: axis, from: "
+     "[0, 0.02, 0.02], to: [0.5, 0.02, 0.02], points: 9}]'",
+     "\"yielded_elements\": "},
     // Obstacles that move, and are written with every frame.
     {"tests/scenes/obstacle_shapes.yaml", "", "\"contact_force_max\": "},
 };

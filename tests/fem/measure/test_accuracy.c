@@ -105,6 +105,44 @@ START_TEST(what_gives_way_after_a_blow_counts) {
 END_TEST
 
 // Four elements across a patch ask for a finer mesh, eight do not.
+// The give of two blocks pressed by p = P (d/D)² until t = 1 and hardly any more at t = 2, when a third body
+// far away is pulled by `pull` [Pa].
+static double give_beside(double pull) {
+  static const char body[] =
+      "{name: %s, mesh: {box: {size: [0.1, 0.1, 0.05], cells: 2}}, place: {translate: [%g, 0, %g]}, "
+      "material: "
+      "{young: 1e6, poisson: 0.3, density: 1000}, fixed: [{group: x_min, components: [x]}, {group: y_min, "
+      "components: [y]}%s], loads: [{group: z_max, traction: [0, 0, %g], table: %s}]}";
+  char bodies[2048];
+  int length = snprintf(bodies, sizeof bodies, "bodies=[");
+  const char *const held = ", {group: z_min, components: [z]}";
+  length += snprintf(bodies + length, sizeof bodies - (size_t)length, body, "lower", 0.0, 0.0, held, 0.0,
+                     "[[0, 0]]");
+  length += snprintf(bodies + length, sizeof bodies - (size_t)length, ",");
+  length += snprintf(bodies + length, sizeof bodies - (size_t)length, body, "upper", 0.0, 0.05, "", -1e4,
+                     "[[0, 0], [1, 1], [2, 0.05]]");
+  length += snprintf(bodies + length, sizeof bodies - (size_t)length, ",");
+  snprintf(bodies + length, sizeof bodies - (size_t)length, body, "other", 1.0, 0.0, held, pull,
+           "[[0, 0], [1, 0], [2, 1]]");
+  strcat(bodies, "]");
+  SceneRun run;
+  scene_run(&run, "patch",
+            (const char *const[]){bodies, "contact={law: {power: {exponent: 2, pressure: 1e4, depth: 1e-4}}}",
+                                  "time.end=2", "output.frames=8", NULL});
+  const Record *contact = record_at(record_find(run.result.account.record, "contacts"), 0);
+  double give = record_find_number(record_find(contact, "estimate"), "give");
+  scene_close(&run);
+  return give;
+}
+
+START_TEST(what_others_store_does_not_count) {
+  // The interface's share of the way at the peak: D of it, of each block p/E of its height.
+  const double by_hand = 1e-4 / (1e-4 + 2 * 1e4 / 1e6 * 0.05);
+  ck_assert_near(give_beside(0) / by_hand, 1, 0.1); // told as energies, of a pressure that is not quite even
+  ck_assert_near(give_beside(1e5) / give_beside(0), 1, 1e-3);
+}
+END_TEST
+
 START_TEST(a_mesh_too_coarse_for_its_patch_is_to_be_refined) {
   const char *const coarse[] = {"output.frames=1", "time.end=0.11", NULL},
                     *const fine[] = {"output.frames=1", "time.end=0.11", "bodies.block.mesh.box.cells=9",
@@ -128,8 +166,8 @@ START_TEST(no_stiffness_is_advised_for_a_depth_that_no_step_can_tell) {
 }
 END_TEST
 
-// The peak force of a drop errs by three times the estimate at most (docs/contact_error.md), the estimate falls
-// with the tolerance, and the tolerance that it asks for leads to a hundredth.
+// The peak force of a drop errs by three times the estimate at most (docs/contact_error.md), the estimate
+// falls with the tolerance, and the tolerance that it asks for leads to a hundredth.
 START_TEST(the_tolerance_bounds_the_error_of_a_peak_force) {
   const char *path = TETLAP_SOURCE_DIR "/examples/01_drop.yaml";
   Told coarse = run_with(path, (const char *const[]){"output.frames=1", "time.tolerance=1e-3", NULL}, 2.5e7),
@@ -196,6 +234,7 @@ int main(void) {
   tcase_add_test(cases, what_a_rim_loses_at_a_given_depth);
   tcase_add_test(cases, the_advice_leads_to_a_hundredth);
   tcase_add_test(cases, what_gives_way_after_a_blow_counts);
+  tcase_add_test(cases, what_others_store_does_not_count);
   tcase_add_test(cases, a_mesh_too_coarse_for_its_patch_is_to_be_refined);
   tcase_add_test(cases, no_stiffness_is_advised_for_a_depth_that_no_step_can_tell);
   tcase_add_test(cases, the_tolerance_bounds_the_error_of_a_peak_force);
