@@ -109,6 +109,9 @@ static Status give(const Foreign *foreign, const OverlapBatch *batch, size_t at)
   if (!isfinite(volume)) return fail_not_finite(foreign, i, "its volume");
   if (batch->doubt) TRY(give_doubt(foreign, batch, at, i));
   *answer.flags = volume < 0 ? OVERLAP_UNSOUND : 0;
+  if (volume == 0 && asks_for_all(foreign))
+    *answer.flags =
+        overlap_sizes_smaller(batch->pairs + OVERLAP_PAIR_SIZE * at) > 0 ? OVERLAP_DISJOINT : OVERLAP_FLAT;
   if (!(volume > 0)) {
     overlap_ops_write_nothing(&answer);
     return STATUS_OK;
