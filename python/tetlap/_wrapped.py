@@ -2,6 +2,7 @@
 """A function as an overlap model, with wrappers round it."""
 
 import re
+from collections.abc import Callable
 
 
 class Wrapped:
@@ -18,7 +19,7 @@ class Wrapped:
         return f"tetlap.wrapped({self.words!r}, {self.model!r})"
 
 
-def wrapped(words, model):
+def wrapped(words: str, model: Callable) -> Wrapped:
     """An overlap model with wrappers round it: `tetlap.run(scene, overlap=tetlap.wrapped("fade:.05=both=", f))`.
 
     words: as they stand before a model (docs/models.md), the outermost first.
