@@ -14,8 +14,9 @@ static bool ends_in(const char *word, size_t length, const char *ending) {
   return length > size && memcmp(word + length - size, ending, size) == 0;
 }
 
-// The length of a Python file's path in `path`, or in `path:name`; 0: it is none.
+// The length of the path of what Python runs in `path`, or in `path:name`; 0: it is none.
 static size_t python_path(const char *word) {
+  if (ends_in(word, strlen(word), ".onnx")) return strlen(word);
   const char *colon = strrchr(word, ':');
   if (colon && strchr(colon, '/')) colon = NULL; // a colon in a folder's name
   size_t length = colon ? (size_t)(colon - word) : strlen(word);

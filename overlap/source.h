@@ -6,6 +6,7 @@
 //   mine.so               a library of the user's (include/tetlap/model.h)
 //   mine.py:volume        a function, or a torch.nn.Module, in a Python file
 //   mine.py               the one that is named `model`
+//   mine.onnx             a network that ONNX Runtime runs, in a Python that has it
 //   exec:COMMAND          a program that speaks the protocol of overlap/foreign/process.h
 //   channel:3:4:volume    a function of the program that started this one (the same protocol)
 //   NAME=WORD             the model of a word with a wrapper round it (overlap/wrap/kinds.h), as in

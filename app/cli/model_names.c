@@ -109,7 +109,7 @@ static bool write_name(Entry *entry) {
 
 // Takes the ending off the path, which says no more than what the file is.
 static void cut_ending(char *path) {
-  static const char *const endings[] = {".safetensors", ".so", ".py"};
+  static const char *const endings[] = {".safetensors", ".so", ".py", ".onnx"};
   size_t length = strlen(path);
   for (int e = 0; e < 3; e++) {
     size_t ending = strlen(endings[e]);

@@ -136,6 +136,13 @@ class RunsOfTheProgram(unittest.TestCase):
         np.testing.assert_array_equal(once["gradient"], again["gradient"])
         self.assertGreater(np.abs(once["gradient"]).min(), 0)
 
+    def test_a_network_of_onnx_needs_its_runtime(self):
+        file = self.directory / "net.onnx"
+        file.parent.mkdir(exist_ok=True)
+        file.write_bytes(b"")
+        with unittest.mock.patch.dict(sys.modules, {"onnxruntime": None}), self.assertRaisesRegex(serve.ModelError, "no ONNX Runtime .*python3-onnxruntime"):
+            serve.load(str(file))
+
     def test_arrays_have_the_shapes_of_the_mesh(self):
         frame = tetlap.run(DROP, self.directory).frames[-1]
         self.assertEqual(frame.points.shape, (27, 3))

@@ -14,6 +14,9 @@ A model is called with pairs, float64 (n, 2, 4, 3) [m], and returns V (n) [m³],
 
 It may be any callable, which gets a NumPy array, or a torch.nn.Module, which gets a tensor and whose gradient comes by autograd where it
 gives none; a module is put into evaluation mode. A class is called first, without arguments.
+
+A word that ends in .onnx is a network that ONNX Runtime runs, on one thread: one input, float or double, of any number of pairs (n, 2, 4, 3),
+and outputs with the names above; a single output is V whatever its name.
 """
 
 import contextlib
@@ -111,9 +114,13 @@ class Model:
 
 
 def load(word):
-    """The model that `path.py:name` names; `path.py` alone has one that is named `model`."""
+    """The model that `path.py:name` or `path.onnx` names; `path.py` alone has one that is named `model`."""
     if np is None:
         raise ModelError(f"{sys.executable} has no NumPy ({_without_numpy}); set TETLAP_PYTHON to a Python that has it")
+    if word.endswith(".onnx"):
+        if not Path(word).is_file():
+            raise ModelError("there is no such file")
+        return Model(Network(word), Path(word).name)
     path, colon, name = word.rpartition(":")
     if not colon or "/" in name:
         path, name = word, "model"
@@ -129,6 +136,38 @@ def load(word):
         known = ", ".join(key for key, value in vars(module).items() if callable(value) and not key.startswith("_"))
         raise ModelError(f"has no '{name}'; it has {known or 'no callables'}")
     return Model(getattr(module, name), name)
+
+
+class Network:
+    """A file of ONNX as a callable that a Model takes."""
+
+    _TYPES = {"tensor(float)": "float32", "tensor(double)": "float64"}
+
+    def __init__(self, path):
+        try:
+            import onnxruntime
+        except ImportError as error:
+            raise ModelError(f"{sys.executable} has no ONNX Runtime ({error}): install python3-onnxruntime there, or set TETLAP_PYTHON to a "
+                             "Python that has it") from None
+        options = onnxruntime.SessionOptions()
+        options.intra_op_num_threads = options.inter_op_num_threads = 1
+        try:
+            self._session = onnxruntime.InferenceSession(path, options, providers=["CPUExecutionProvider"])
+        except Exception as error:  # its own classes, of which none is public
+            raise ModelError(f"ONNX Runtime cannot read it: {str(error).strip().splitlines()[-1]}") from None
+        inputs, outputs = self._session.get_inputs(), [output.name for output in self._session.get_outputs()]
+        told = ", ".join(f"'{one.name}' {one.type} {one.shape}" for one in inputs)
+        if len(inputs) != 1 or inputs[0].type not in self._TYPES or len(inputs[0].shape) != 4 or inputs[0].shape[1:] != [2, 4, 3]:
+            raise ModelError(f"expected one input, float or double, of shape (n, 2, 4, 3); it has {told or 'none'}")
+        if isinstance(inputs[0].shape[0], int):
+            raise ModelError(f"its input has {inputs[0].shape[0]} pairs, expected any number: export it with a dynamic first axis")
+        self._input, self._type = inputs[0].name, self._TYPES[inputs[0].type]
+        self._names = ["volume"] if len(outputs) == 1 else outputs
+        if "volume" not in self._names:
+            raise ModelError(f"none of its outputs is named volume; it has {', '.join(outputs)}")
+
+    def __call__(self, pairs):
+        return dict(zip(self._names, self._session.run(None, {self._input: pairs.astype(self._type)})))
 
 
 class Channel:

@@ -224,7 +224,7 @@ const AppCommand app_command_verdict = {
     .options = option_table,
     .arguments = &(
         const AppArguments){"MODEL…", offsetof(Options, models), MOST_MODELS, offsetof(Options, model_count),
-                            .missing = "name a model: a name, weights, mine.so, mine.py:NAME, exec:COMMAND",
+                            .missing = "name a model: a name, weights, mine.so, mine.py:NAME, mine.onnx, exec:COMMAND",
                             .excess = "'%s' is one model too many: at most %d"},
     .doc = "Judge overlap models: symmetries and bounds on hard pairs, errors on pairs that no training saw, "
            "and "

@@ -54,7 +54,7 @@ const SceneChoices app_scene_choices_overlaps = {
     .name = overlap_name,
     .help = overlap_help,
     .accepts = overlap_source_has_form,
-    .accepts_help = "a file NET.safetensors, MINE.so, MINE.py:NAME, or exec:COMMAND; each may have wrappers "
+    .accepts_help = "a file NET.safetensors, MINE.so, MINE.py:NAME, MINE.onnx, or exec:COMMAND; each may have wrappers "
                     "before it, as in hybrid=geo and both=MINE.so"};
 
 // Names of numbers and switches in a scene's definition.

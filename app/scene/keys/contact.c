@@ -155,7 +155,7 @@ static const SceneKey contact_keys[] = {
     {"overlap", SCENE_NAME, AT(FemContactDef, overlap), .fallback = "clip",
      .choices = &app_scene_choices_overlaps,
      .help = "the model that computes the overlap volume of two tetrahedra: a name, or a file of yours, from "
-             "the scene file: net.safetensors, mine.so, mine.py:name, exec:COMMAND; wrappers stand before "
+             "the scene file: net.safetensors, mine.so, mine.py:name, mine.onnx, exec:COMMAND; wrappers stand before "
              "it, as in both=mine.so"},
     {"margin", SCENE_NUMBER, AT(FemContactDef, margin), .unit = "m", .range = "(0, inf)",
      .absent_help = "half the shortest mean edge of a body",
