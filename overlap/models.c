@@ -92,6 +92,7 @@ static Status create_round(OverlapModel *model, const char *word, const char *in
   double number;
   const bool is_foreign = overlap_source_is_foreign(inner), is_bare = !overlap_source_inner(inner);
   const OverlapOps *named = find_named(word, strcspn(word, "="));
+  if (!*inner) return status_fail(STATUS_INPUT, "%s: a model is missing behind it, as in %sgeo", word, word);
   if (named && named->create && named != &overlap_hybrid_ops && !is_foreign && is_bare)
     return overlap_models_create_with(model, named->name, inner, options);
   TRY(overlap_wrap_kinds_find(word, &kind, &number));
@@ -110,6 +111,9 @@ Status overlap_models_create_with(OverlapModel *model, const char *word, const c
                                   const OverlapOptions *options) {
   *model = (OverlapModel){0};
   const char *inner = overlap_source_inner(word);
+  if (inner && weights)
+    return status_fail(STATUS_INPUT, "%s: weights stand in the word, in place of the model: %.*s%s", word,
+                       (int)(inner - word), word, weights);
   if (inner) return create_round(model, word, inner, options);
   if (overlap_source_is_foreign(word)) return create_foreign(model, word);
   const OverlapOps *ops = find_named(word, strlen(word));

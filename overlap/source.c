@@ -28,10 +28,10 @@ static bool begins_with(const char *word, const char *text) {
 }
 
 const char *overlap_source_inner(const char *word) {
-  size_t length = strspn(word, "abcdefghijklmnopqrstuvwxyz-");
-  char *end = (char *)word + length;
+  size_t length = strspn(word, "abcdefghijklmnopqrstuvwxyz0123456789-");
+  const char *end = word + length;
   if (length == 0 || begins_with(word, COMMAND) || begins_with(word, CHANNEL)) return NULL;
-  if (*end == ':') strtod(end + 1, &end);
+  if (*end == ':') end += strcspn(end, "=/"); // the number is read where its wrapper is known
   return *end == '=' ? end + 1 : NULL;
 }
 
@@ -76,7 +76,8 @@ bool overlap_source_from(const char *word, const char *folder, char *text, size_
   const char *path;
   if (overlap_source_path(word, &path) == 0 || path[0] == '/')
     return snprintf(text, size, "%s", word) < (int)size;
-  return snprintf(text, size, "%.*s%s/%s", (int)(path - word), word, folder, path) < (int)size;
+  const char *here = overlap_source_inner(folder) ? "./" : ""; // a folder `e=1` is no word before a model
+  return snprintf(text, size, "%.*s%s%s/%s", (int)(path - word), word, here, folder, path) < (int)size;
 }
 
 bool overlap_source_has_form(const char *word) {

@@ -111,7 +111,7 @@ static bool write_name(Entry *entry) {
 static void cut_ending(char *path) {
   static const char *const endings[] = {".safetensors", ".so", ".py", ".onnx"};
   size_t length = strlen(path);
-  for (int e = 0; e < 3; e++) {
+  for (size_t e = 0; e < sizeof endings / sizeof *endings; e++) {
     size_t ending = strlen(endings[e]);
     if (length <= ending || strcmp(path + length - ending, endings[e]) != 0) continue;
     path[length - ending] = 0;

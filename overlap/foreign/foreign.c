@@ -91,12 +91,17 @@ static Status fail_not_finite(const Foreign *foreign, int pair, const char *what
 }
 
 // Infinite: it knows nothing of the pair.
-static Status give_doubt(const Foreign *foreign, const OverlapBatch *batch, size_t at, int i) {
-  batch->doubt[at] = foreign->request.arrays[OVERLAP_FOREIGN_DOUBT][at];
-  return batch->doubt[at] >= 0
+// It may be infinite.
+static Status check_doubt(const Foreign *foreign, double doubt, int i) {
+  return doubt >= 0
              ? STATUS_OK
              : status_fail(STATUS_SOLVER, "overlap model '%s': pair %d: its doubt is %g, expected 0 or more",
-                           foreign->name, i, batch->doubt[at]);
+                           foreign->name, i, doubt);
+}
+
+static Status give_doubt(const Foreign *foreign, const OverlapBatch *batch, size_t at, int i) {
+  batch->doubt[at] = foreign->request.arrays[OVERLAP_FOREIGN_DOUBT][at];
+  return check_doubt(foreign, batch->doubt[at], i);
 }
 
 // The model's answer for one pair, into the batch.
@@ -193,8 +198,10 @@ static Status eval_all(Foreign *foreign, int count, const double *pairs, double 
   memcpy(numbers, request->arrays[array], bytes);
   if (volumes) memcpy(volumes, request->arrays[OVERLAP_FOREIGN_VOLUME], bytes);
   for (int i = 0; i < count; i++)
-    if (!isfinite(numbers[i]))
-      return fail_not_finite(foreign, i, array == OVERLAP_FOREIGN_LOGIT ? "its logit" : "its doubt");
+    if (array == OVERLAP_FOREIGN_LOGIT && !isfinite(numbers[i]))
+      return fail_not_finite(foreign, i, "its logit");
+    else if (array == OVERLAP_FOREIGN_DOUBT)
+      TRY(check_doubt(foreign, numbers[i], i));
   return STATUS_OK;
 }
 

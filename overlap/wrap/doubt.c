@@ -18,11 +18,14 @@ static Status check(const OverlapModel *inner) {
 static Status share(const OverlapWrap *wrap, const OverlapBatch *portion, int order,
                     OverlapWrapShares *shares) {
   (void)order; // there is no ∇V
-  for (int i = 0; i < portion->pair_count; i++)
-    shares->value[i] = overlap_hybrid_share(&(OverlapHybridSigns){.pair = portion->pairs + SIZE * i,
-                                                                  .doubt = wrap->number,
-                                                                  .volume = portion->volume[i],
-                                                                  .bound = portion->doubt[i]});
+  for (int i = 0; i < portion->pair_count; i++) {
+    const OverlapHybridSigns signs = {.pair = portion->pairs + SIZE * i,
+                                      .doubt = wrap->number,
+                                      .volume = portion->volume[i],
+                                      .bound = portion->doubt[i]};
+    // A volume of 0 that is in doubt may be a contact that was missed.
+    shares->value[i] = signs.volume > 0 ? overlap_hybrid_share(&signs) : signs.bound > 0;
+  }
   return STATUS_OK;
 }
 

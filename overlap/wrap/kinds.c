@@ -30,13 +30,24 @@ static Status fail_unknown(const char *word, int length) {
                      word, length, word, known, word);
 }
 
+// Of `:NUMBER=`; NAN where there is none.
+static Status read_number(const char *word, const char *from, double *number) {
+  char *end;
+  *number = NAN;
+  if (*from != ':') return STATUS_OK;
+  *number = strtod(from + 1, &end);
+  return *end == '=' && end > from + 1 && isfinite(*number)
+             ? STATUS_OK
+             : status_fail(STATUS_INPUT, "%s: '%.*s' before '=' is no number", word,
+                           (int)strcspn(from + 1, "="), from + 1);
+}
+
 Status overlap_wrap_kinds_find(const char *word, const OverlapWrapKind **kind, double *number) {
   const size_t length = strcspn(word, ":=");
-  *number = word[length] == ':' ? strtod(word + length + 1, NULL) : NAN;
   for (int k = 0; k < KINDS; k++)
     if (strlen(kinds[k]->name) == length && strncmp(kinds[k]->name, word, length) == 0) {
       *kind = kinds[k];
-      return STATUS_OK;
+      return read_number(word, word + length, number);
     }
   return fail_unknown(word, (int)length);
 }

@@ -52,10 +52,11 @@ static Status ask_other(const OverlapWrapMixture *mixture, const OverlapBatch *p
 
 static unsigned flags_of(unsigned inner, bool has_clip, double share, double volume) {
   if (inner & OVERLAP_FLAT) return inner;
+  if (volume == 0) return (inner & OVERLAP_UNSOUND) | OVERLAP_DISJOINT;
   inner &= ~(unsigned)OVERLAP_DISJOINT;
   if (has_clip && share >= 1) inner = OVERLAP_FALLBACK;
   if (has_clip && share < 1) inner |= OVERLAP_BLENDED;
-  return volume == 0 ? inner | OVERLAP_DISJOINT : inner;
+  return inner;
 }
 
 static void mix(const OverlapBatch *portion, const OverlapWrapShares *shares, const Other *other, int k,

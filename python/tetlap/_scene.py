@@ -65,7 +65,7 @@ def _solid_with_paths(solid):
 
 
 #: What stands before a model, as in both= and fade:.05=, and NET.safetensors, MINE.so, MINE.py:name: a model that is a file
-_WRAPPERS = re.compile(r"(?:(?!exec:|channel:)[a-z-]+(?::[-+.\de]+)?=)*")
+_WRAPPERS = re.compile(r"(?:(?!exec:|channel:)[a-z0-9-]+(?::[^=/]*)?=)*")
 _MODEL_FILE = re.compile(r"(?!exec:)(.*(?:\.safetensors|\.so|\.py(?=:)))(:.*)?", re.S)
 
 

@@ -12,7 +12,8 @@ static const char POTENTIAL[] =
 static const char NET[] =
     "write into contact.overlap, before the model, what it asks for: keep=, cut= or fade:TOUCH= for ghosts, "
     "both= for orders, coplanar= for coplanar, hybrid:DOUBT= for doubt, tpn-scene=FILE.safetensors for gate, "
-    "hybrid=FILE.safetensors for out_of_range, deep and confidence; the weights are the model itself, "
+    "hybrid=FILE.safetensors for out_of_range; deep, confidence and touch are no longer set; the weights are "
+    "the model itself, "
     "contact.overlap: FILE.safetensors";
 
 // `value` NULL: the key itself; "*": any text.
