@@ -86,7 +86,6 @@ Status fem_krylov_solve(FemKrylov *krylov, const double *b, double tolerance, do
   double whole = length_of(krylov, b);
   int count = 0;
   *residual = 0;
-  krylov->directions = 0;
   memset(x, 0, (size_t)krylov->count * sizeof *x);
   if (whole == 0) return STATUS_OK;
   triangle.right[0] = whole;
@@ -95,7 +94,6 @@ Status fem_krylov_solve(FemKrylov *krylov, const double *b, double tolerance, do
     TRY(extend(krylov, &triangle, count));
     *residual = fabs(triangle.right[++count]) / whole;
   }
-  krylov->directions = count;
   TRY(combine(krylov, &triangle, count, x));
   if (isfinite(*residual)) return STATUS_OK;
   return status_fail(STATUS_SOLVER, "GMRES met what is not a number");
