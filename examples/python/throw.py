@@ -49,7 +49,7 @@ def path(x):
 
 
 def draw(file, paths):
-    """The ball's way from the side, every third frame, at the first throw and at the last."""
+    """The ball's way from the side, every fifth frame, at the first throw and at the last."""
     parts = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 900 380" font-family="sans-serif" font-size="13">',
              '<rect width="900" height="380" fill="white"/>',
              '<path d="M0 220H512L640 348L928 60V380H0Z" fill="#ddd" stroke="#444"/>']

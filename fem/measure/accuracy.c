@@ -66,6 +66,7 @@ static double energy_of_quadratic(const FemModel *model, int e, const double *po
 static void share_energy(FemAccuracy *accuracy, const FemModel *model, const double *positions,
                          double elastic) {
   double sum = 0;
+#pragma omp parallel for schedule(dynamic) if (model->scene->body_count > 1)
   for (int b = 0; b < model->scene->body_count; b++) {
     const FemModelBody *body = &model->bodies[b];
     double energy = 0;
@@ -75,8 +76,8 @@ static void share_energy(FemAccuracy *accuracy, const FemModel *model, const dou
     else
       for (int e = body->tet_begin; e < body->tet_end; e++) energy += energy_of_tet(model, e, positions);
     accuracy->energies[b] = energy;
-    sum += energy;
   }
+  for (int b = 0; b < model->scene->body_count; b++) sum += accuracy->energies[b];
   for (int b = 0; b < model->scene->body_count && sum > 0; b++) accuracy->energies[b] *= elastic / sum;
 }
 

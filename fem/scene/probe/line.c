@@ -99,23 +99,32 @@ static void find_points(FemLine *line, const FemMesh *mesh, const ContactSurface
   }
 }
 
+static Status fail_outside(const FemLineDef *def, const FemMesh *mesh) {
+  Vec3 least = {INFINITY, INFINITY, INFINITY}, most = {-INFINITY, -INFINITY, -INFINITY};
+  for (int v = 0; v < mesh->vertex_count; v++) {
+    const double *x = mesh->rest + 3 * (size_t)v;
+    least = (Vec3){fmin(least.x, x[0]), fmin(least.y, x[1]), fmin(least.z, x[2])};
+    most = (Vec3){fmax(most.x, x[0]), fmax(most.y, x[1]), fmax(most.z, x[2])};
+  }
+  return status_fail(STATUS_INPUT,
+                     "none of its %d points is in the body, as placed, at rest [m]: that reaches from (%.6g, "
+                     "%.6g, %.6g) to (%.6g, %.6g, %.6g)",
+                     def->points, least.x, least.y, least.z, most.x, most.y, most.z);
+}
+
 Status fem_line_create(FemLine *line, const FemLineDef *def, const FemMesh *mesh, int tet_begin) {
   ContactSurface surface = {0};
   *line = (FemLine){.def = def};
-  if (!(vec3_length(vec3_sub(vec3_at(def->to), vec3_at(def->from))) > 0))
-    return status_fail(STATUS_INPUT, "from and to are the same point; give the two ends of a line");
+  double length = vec3_length(vec3_sub(vec3_at(def->to), vec3_at(def->from)));
+  if (!(length > 0 && isfinite(length)))
+    return status_fail(STATUS_INPUT, "from and to are %g m apart; give the two ends of a line", length);
   line->points = memory_zeroed((size_t)def->points, sizeof *line->points);
   Status status = line->points ? STATUS_OK : status_no_memory("a line");
   if (!status) status = contact_surface_find(&surface, (const int(*)[4])mesh->tets, 0, mesh->tet_count);
   if (!status) status = contact_surface_index(&surface, mesh->rest);
   if (!status) find_points(line, mesh, &surface, tet_begin);
   contact_surface_destroy(&surface);
-  if (!status && line->count == 0)
-    status =
-        status_fail(STATUS_INPUT,
-                    "none of its %d points is in the body, as placed, at rest [m]; `tetlap check` has the "
-                    "body's box",
-                    def->points);
+  if (!status && line->count == 0) status = fail_outside(def, mesh);
   if (status) fem_line_destroy(line);
   return status;
 }

@@ -94,10 +94,12 @@ END_TEST
 START_TEST(lines_that_cannot_be_are_refused_with_their_place) {
   static const struct {
     const char *lines, *message;
-  } cases[] = {{"[{name: far, from: [5, 5, 5], to: [6, 6, 6]}]", "line 'far': none of its 51 points"},
-               {"[{name: dot, from: [0, 0, 0], to: [0, 0, 0]}]", "line 'dot': from and to are the same"},
-               {"[{name: a, from: [0, 0, 0], to: [0.1, 0, 0]}, {name: a, from: [0, 0, 0], to: [0, 0.1, 0]}]",
-                "line 'a': there is another line of that name"}};
+  } cases[] = {
+      {"[{name: far, from: [5, 5, 5], to: [6, 6, 6]}]", "that reaches from ("},
+      {"[{name: dot, from: [0, 0, 0], to: [0, 0, 0]}]", "line 'dot': from and to are 0 m apart"},
+      {"[{name: long, from: [1e300, 0, 0], to: [-1e300, 0, 0]}]", "line 'long': from and to are inf m apart"},
+      {"[{name: a, from: [0, 0, 0], to: [0.1, 0, 0]}, {name: a, from: [0, 0, 0], to: [0, 0.1, 0]}]",
+       "line 'a': there is another line of that name"}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     FemSceneDef scene;
     FemModel model;
