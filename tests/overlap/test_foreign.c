@@ -98,6 +98,8 @@ START_TEST(a_word_says_what_it_is) {
   ck_assert_str_eq(text, "hybrid=/f/a.safetensors");
   ck_assert(overlap_source_from("/a.py:f", "/f", text, sizeof text));
   ck_assert_str_eq(text, "/a.py:f");
+  ck_assert(overlap_source_from("both=a.py:f", "e=1", text, sizeof text));
+  ck_assert_str_eq(text, "both=./e=1/a.py:f");
   ck_assert(!overlap_source_from("a.py:f", "/a/folder", text, 8));
 }
 END_TEST

@@ -133,9 +133,9 @@ START_TEST(coplanar_turns_to_clip_where_faces_lie_in_one_plane) {
 }
 END_TEST
 
-// The model's V is 1e-3 and its doubt 0, infinite, or between, as the first coordinate has it.
+// The model's V is 1e-3, or 0, and its doubt 0, infinite, or between, as the first coordinate has it.
 START_TEST(hybrid_is_clip_where_a_model_of_yours_doubts) {
-  int left[3] = {0};
+  int left[3] = {0}, missed = 0;
   ask("hybrid=placed=" TETLAP_MODEL_16, pairs, VOLUMES, true, &outer);
   ask("clip", pairs, VOLUMES, true, &other);
   for (int i = 0; i < PAIRS; i++) {
@@ -147,9 +147,10 @@ START_TEST(hybrid_is_clip_where_a_model_of_yours_doubts) {
     if (x > 0.6) ck_assert_near(c, 1, 1e-9);
     if (x > 0.3 && x < 0.6) ck_assert(c > 0.1 && c < 0.9 && (outer.flags[i] & OVERLAP_BLENDED));
     left[x < 0.3 ? 0 : x > 0.6 ? 2 : 1]++;
+    missed += x > 0.8;
     if (other.volume[i] > 1e-6) compare_centroids(outer.centroid[i], other.centroid[i], 1e-9);
   }
-  ck_assert(left[0] > 3 && left[1] > 3 && left[2] > 3);
+  ck_assert(left[0] > 3 && left[1] > 3 && left[2] > 3 && missed > 0);
   OverlapModel model;
   ck_assert_ok(overlap_models_create(&model, "hybrid=" TETLAP_MODEL_16));
   ck_assert(!overlap_model_has_gradient(&model) && !overlap_model_has_own_centroid(&model));
@@ -216,6 +217,10 @@ START_TEST(what_cannot_be_said_is_refused) {
   expect_refused("bth=geo", "'bth=' is none of what stands before a model: cut, keep, fade");
   expect_refused("both:3=geo", "'both' takes no number");
   expect_refused("fade:2=geo", "is 2; expected one between 0 and 1");
+  expect_refused("fade:abc=geo", "'abc' before '=' is no number");
+  expect_refused("fade:nan=geo", "'nan' before '=' is no number");
+  expect_refused("fade:=geo", "'' before '=' is no number");
+  expect_refused("both=", "a model is missing behind it");
   expect_refused("hybrid:0=geo", "expected");
   expect_refused("hybrid=both=tpn", "'both=tpn' tells no doubt");
   expect_refused("keep=geo", "'geo' gives no volume to disjoint pairs");

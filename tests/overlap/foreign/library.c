@@ -74,6 +74,7 @@ static int evaluate(void *self, const TetlapModelBatch *batch, char *message, si
   for (size_t i = 0; WRONG == DOUBTS && batch->doubt && i < batch->count; i++) {
     const double x = batch->pairs[24 * i];
     batch->doubt[i] = x < 0.3 ? 0 : x > 0.6 ? INFINITY : 7e-6;
+    if (x > 0.8) batch->volume[i] = 0;
   }
   if (WRONG == SPOILS) memset((double *)batch->pairs, 0xFF, 24 * batch->count * sizeof(double));
   if (WRONG != EVALUATE_FAILS) return 0;
