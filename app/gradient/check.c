@@ -50,6 +50,7 @@ static Status halve(AppGradientCheck *check, Other *other, const FemModel *model
   AppGradientAnswer half;
   AppGradientWords keys = *words;
   keys.by_weights = false;
+  keys.most_megabytes = 2 * words->most_megabytes; // as many steps, twice
   TRY(scene->is_static ? add(other, "output.frames", 2 * scene->frames)
                        : add(other, "time.tolerance", scene->tolerance / OF_HALF));
   if (!scene->is_static && scene->max_step > 0) TRY(add(other, "time.max_step", scene->max_step / 2));

@@ -309,6 +309,8 @@ const char *fem_parameter_idle(const FemModel *model, const FemParameter *parame
     return idle_of_law(model, parameter, FEM_MATERIAL_OGDEN);
   case FEM_PARAMETER_START:
   case FEM_PARAMETER_START_SPIN:
+    if (model->start) return "the scene goes on from another run, whose velocities it has";
+    return model->scene->is_static ? "it acts in motions alone, and the scene is static" : NULL;
   case FEM_PARAMETER_CONTACT_VISCOSITY:
   case FEM_PARAMETER_VISCOSITY:
   case FEM_PARAMETER_BULK_VISCOSITY:
