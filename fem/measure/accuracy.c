@@ -9,6 +9,7 @@
 #include "base/vec3.h"
 #include "contact/evaluation.h"
 #include "contact/pressure/patch/area.h"
+#include "fem/effect/elements/elasticity.h"
 #include "fem/model/limits.h"
 #include "fem/model/tolerance.h"
 
@@ -46,39 +47,16 @@ void fem_accuracy_destroy(FemAccuracy *accuracy) {
   *accuracy = (FemAccuracy){0};
 }
 
-static double energy_of_tet(const FemModel *model, int tet, const double *positions) {
-  double x[12];
-  for (int v = 0; v < 4; v++) memcpy(x + 3 * v, positions + 3 * (size_t)model->tets[tet][v], 3 * sizeof *x);
-  const FemElement element = fem_model_element(model, tet);
-  return fem_element_energy(&element, &model->parts[model->tet_part[tet]].local, x);
-}
-
-static double energy_of_quadratic(const FemModel *model, int e, const double *positions) {
-  const FemModelPart *part = &model->parts[model->quadratic_part[e]];
-  double x[30];
-  for (int v = 0; v < 10; v++)
-    memcpy(x + 3 * v, positions + 3 * (size_t)model->quadratic_nodes[e][v], 3 * sizeof *x);
-  return fem_quadratic_energy(&model->quadratics[e], (FemQuadraticLaw){&part->local, part->bulk}, x);
-}
-
 // Of every body, scaled so that the sum is `elastic`: what the elements' own law leaves out is shared as the
 // rest.
-static void share_energy(FemAccuracy *accuracy, const FemModel *model, const double *positions,
+static void share_energy(FemAccuracy *accuracy, const FemSystem *system, const FemState *state,
                          double elastic) {
+  const int count = system->model->scene->body_count;
   double sum = 0;
-#pragma omp parallel for schedule(dynamic) if (model->scene->body_count > 1)
-  for (int b = 0; b < model->scene->body_count; b++) {
-    const FemModelBody *body = &model->bodies[b];
-    double energy = 0;
-    if (body->quadratic_end > body->quadratic_begin)
-      for (int e = body->quadratic_begin; e < body->quadratic_end; e++)
-        energy += energy_of_quadratic(model, e, positions);
-    else
-      for (int e = body->tet_begin; e < body->tet_end; e++) energy += energy_of_tet(model, e, positions);
-    accuracy->energies[b] = energy;
-  }
-  for (int b = 0; b < model->scene->body_count; b++) sum += accuracy->energies[b];
-  for (int b = 0; b < model->scene->body_count && sum > 0; b++) accuracy->energies[b] *= elastic / sum;
+  void *elasticity = fem_system_effect(system, &fem_effect_elasticity);
+  fem_effect_elasticity_energies(elasticity, state, accuracy->energies);
+  for (int b = 0; b < count; b++) sum += accuracy->energies[b];
+  for (int b = 0; b < count && sum > 0; b++) accuracy->energies[b] *= elastic / sum;
 }
 
 // Mean edge of the elements of a patch, each as if it were regular: V = e³ / (6 √2).
@@ -155,12 +133,12 @@ static bool is_largest(const ContactInterface *interface, double time, FemAccura
 
 // Whether the two store more than ever, U and what is elastic in them; then `found` holds it. What all bodies
 // store is no less, and known.
-static bool is_fullest(FemAccuracy *accuracy, const FemModel *model, const double *positions,
+static bool is_fullest(FemAccuracy *accuracy, const FemSystem *system, const FemState *state,
                        const ContactInterfaceDef *interface, double energy, double elastic,
                        FemAccuracyPair *found) {
-  const int bodies = model->scene->body_count;
+  const int bodies = system->model->scene->body_count;
   if (!(energy + elastic > GROWN * found->stored)) return false;
-  if (!accuracy->has_energies) share_energy(accuracy, model, positions, elastic);
+  if (!accuracy->has_energies) share_energy(accuracy, system, state, elastic);
   accuracy->has_energies = true;
   double first = interface->a < bodies ? accuracy->energies[interface->a] : 0;
   double second =
@@ -181,7 +159,7 @@ static Status estimate(const ContactLayout *layout, const ContactEvaluation *eva
   return find_rim(layout, evaluation, patch, &found->rim);
 }
 
-Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, const ContactLayout *layout,
+Status fem_accuracy_look(FemAccuracy *accuracy, const FemSystem *system, const ContactLayout *layout,
                          const ContactEvaluation *evaluation, const FemState *state, double elastic) {
   accuracy->found_count = 0;
   accuracy->has_energies = false;
@@ -197,7 +175,7 @@ Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, const Con
     if (!(interface->pressed > 0)) continue;
     *found = accuracy->pairs[patch->interface];
     bool is_more = is_largest(interface, state->time, found);
-    is_more |= is_fullest(accuracy, model, state->positions, &layout->interfaces[patch->interface],
+    is_more |= is_fullest(accuracy, system, state, &layout->interfaces[patch->interface],
                           energy_of(layout, evaluation, patch), elastic, found);
     if (!is_more) continue;
     if (found->pressed > GROWN * found->estimated) TRY(estimate(layout, evaluation, patch, found));

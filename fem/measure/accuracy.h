@@ -73,7 +73,7 @@ void fem_accuracy_destroy(FemAccuracy *accuracy);
 
 // Finds pairs that press more than ever before at a state, of which contact's evaluation is; `elastic`: the
 // elastic energy of all bodies [J].
-Status fem_accuracy_look(FemAccuracy *accuracy, const FemModel *model, const ContactLayout *layout,
+Status fem_accuracy_look(FemAccuracy *accuracy, const FemSystem *system, const ContactLayout *layout,
                          const ContactEvaluation *evaluation, const FemState *state, double elastic);
 // The state that was looked at is accepted.
 void fem_accuracy_accept(FemAccuracy *accuracy);

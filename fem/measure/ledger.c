@@ -54,7 +54,7 @@ static Status look(FemLedger *ledger, const FemState *state, const FemLedgerEntr
   const ContactEvaluation *contact;
   TRY(fem_effect_contact_evaluate(ledger->system, state, &contact));
   TRY(contact_passage_look(&ledger->passage, ledger->contact, contact));
-  return fem_accuracy_look(&ledger->accuracy, ledger->system->model, layout, contact, state, entry->elastic);
+  return fem_accuracy_look(&ledger->accuracy, ledger->system, layout, contact, state, entry->elastic);
 }
 
 static void accept(FemLedger *ledger) {

@@ -193,16 +193,33 @@ static double sum_chunk(const FemAssembly *assembly, const FemPacks *packs, cons
   return sum;
 }
 
+static void sum_chunks(FemAssembly *assembly, const FemPacks *packs, const FemState *state,
+                       const FemAssemblyKernels *kernels, double *sums) {
+#pragma omp parallel for schedule(static) if (work_of(packs, QUADRATIC_FORCES) > FEW_FORCES)
+  for (int chunk = 0; chunk < packs->chunk_count; chunk++)
+    sums[chunk] = sum_chunk(assembly, packs, state, kernels, chunk);
+}
+
 double fem_assembly_sum(FemAssembly *assembly, const FemState *state, const FemAssemblyKernels *kernels) {
   double sum = 0;
   for (int k = 0; k < 2; k++) {
     const FemPacks *packs = &assembly->packs[k];
-#pragma omp parallel for schedule(static) if (work_of(packs, QUADRATIC_FORCES) > FEW_FORCES)
-    for (int chunk = 0; chunk < packs->chunk_count; chunk++)
-      assembly->partial[k][chunk] = sum_chunk(assembly, packs, state, kernels, chunk);
+    sum_chunks(assembly, packs, state, kernels, assembly->partial[k]);
     for (int chunk = 0; chunk < packs->chunk_count; chunk++) sum += assembly->partial[k][chunk];
   }
   return sum;
+}
+
+void fem_assembly_sum_bodies(FemAssembly *assembly, const FemState *state, const FemAssemblyKernels *kernels,
+                             double *sums) {
+  const FemModel *model = assembly->model;
+  for (int b = 0; b < model->body_count; b++) sums[b] = 0;
+  for (int k = 0; k < 2; k++) {
+    const FemPacks *packs = &assembly->packs[k];
+    sum_chunks(assembly, packs, state, kernels, assembly->partial[k]);
+    for (int chunk = 0; chunk < packs->chunk_count; chunk++)
+      sums[model->parts[packs->chunk_part[chunk]].body] += assembly->partial[k][chunk];
+  }
 }
 
 // ---- Operations of an effect.

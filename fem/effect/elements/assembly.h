@@ -58,6 +58,9 @@ Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state,
                                  const FemAssemblyKernels *kernels, double stiffness_scale,
                                  double damping_scale, FemMatrix *matrix);
 double fem_assembly_sum(FemAssembly *assembly, const FemState *state, const FemAssemblyKernels *kernels);
+// The same of each body apart (body_count).
+void fem_assembly_sum_bodies(FemAssembly *assembly, const FemState *state, const FemAssemblyKernels *kernels,
+                             double *sums);
 
 // Operations of an effect that is an assembly, as FemEffectOps has them: nothing of it depends on former
 // states, and the matrix couples the nodes of each element.

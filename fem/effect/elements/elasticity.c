@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Elasticity: every element's stored energy by its material's law.
+#include "fem/effect/elements/elasticity.h"
+
+#include "base/ranks.h"
 #include "fem/effect/elements/assembly.h"
 
 static bool is_wanted(const FemSceneDef *scene) {
@@ -60,6 +63,12 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
 static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   energy->elastic += fem_assembly_sum(self, state, &kernels);
   return STATUS_OK;
+}
+
+void fem_effect_elasticity_energies(void *effect, const FemState *state, double *energies) {
+  const FemModel *model = ((const FemAssembly *)effect)->model;
+  fem_assembly_sum_bodies(effect, state, &kernels, energies);
+  if (model->share) ranks()->sum(energies, (size_t)model->body_count);
 }
 
 const FemEffectOps fem_effect_elasticity = {

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "fem/effect/elements/assembly.h"
+#include "fem/effect/elements/elasticity.h"
 #include "fem/effect/numbering.h"
 #include "fem/model/build.h"
 #include "reference/element.h"
@@ -144,6 +145,8 @@ START_TEST(elastic_forces_and_energy_are_the_sums_over_elements_of_bodies) {
   ck_assert_ok(fem_effect_elasticity.create(&effect, model));
   find_force(&scene, &fem_effect_elasticity, effect);
   double *expected = memory_zeroed(dof_count(&scene), sizeof *expected), sum = 0;
+  double sums[2] = {0, 0}, energies[3] = {NAN, NAN, NAN}; // of bodies; the third is the obstacle
+  ck_assert_int_eq(model->body_count, 3);
   ck_assert_int_gt(model->tet_count, model->bodies[1].tet_end);
   for (int tet = 0; tet < model->bodies[1].tet_end; tet++) {
     double x[12], force[12];
@@ -152,8 +155,9 @@ START_TEST(elastic_forces_and_energy_are_the_sums_over_elements_of_bodies) {
     const FemElement element = fem_model_element(model, tet);
     reference_element_force(&element, material, x, force);
     for (int r = 0; r < 12; r++) expected[3 * model->tets[tet][r / 3] + r % 3] += force[r];
-    sum += fem_element_energy(&element, material, x);
+    sums[model->tet_body[tet]] += fem_element_energy(&element, material, x);
   }
+  sum = sums[0] + sums[1];
   for (size_t i = 0; i < dof_count(&scene); i++) ck_assert_near(scene.force[i], expected[i], 1e-14);
   for (int i = 3 * model->bodies[2].vertex_begin; i < 3 * model->bodies[2].vertex_end; i++)
     ck_assert_double_eq(scene.force[i], 0);
@@ -162,6 +166,9 @@ START_TEST(elastic_forces_and_energy_are_the_sums_over_elements_of_bodies) {
   ck_assert_ok(fem_effect_elasticity.add_energy(effect, &state, &energy));
   ck_assert(sum > 1e-3);
   ck_assert_near(energy.elastic, sum, 1e-13 * sum);
+  fem_effect_elasticity_energies(effect, &state, energies);
+  for (int b = 0; b < 2; b++) ck_assert_near(energies[b], sums[b], 1e-13 * sum);
+  ck_assert(sums[0] > 1e-3 && sums[1] > 1e-3 && energies[2] == 0);
   memory_free(expected);
   fem_effect_elasticity.destroy(effect);
   clear(&scene);

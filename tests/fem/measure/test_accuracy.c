@@ -104,7 +104,6 @@ START_TEST(what_gives_way_after_a_blow_counts) {
 }
 END_TEST
 
-// Four elements across a patch ask for a finer mesh, eight do not.
 // The give of two blocks pressed by p = P (d/D)² until t = 1 and hardly any more at t = 2, when a third body
 // far away is pulled by `pull` [Pa].
 static double give_beside(double pull) {
@@ -143,6 +142,7 @@ START_TEST(what_others_store_does_not_count) {
 }
 END_TEST
 
+// Four elements across a patch ask for a finer mesh, eight do not.
 START_TEST(a_mesh_too_coarse_for_its_patch_is_to_be_refined) {
   const char *const coarse[] = {"output.frames=1", "time.end=0.11", NULL},
                     *const fine[] = {"output.frames=1", "time.end=0.11", "bodies.block.mesh.box.cells=9",
