@@ -61,7 +61,7 @@ void contact_star_sink_destroy(ContactStarSink *sink) {
 }
 
 size_t contact_star_sink_bytes(const ContactStarSink *sink) {
-  const void *const arrays[] = {sink->vertices, sink->place, sink->outer, sink->dense};
+  const void *const arrays[] = {sink->vertices, sink->place, sink->outer, sink->half, sink->dense};
   return memory_held_by(sizeof arrays / sizeof *arrays, arrays);
 }
 
