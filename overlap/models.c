@@ -66,6 +66,14 @@ static Status create_foreign(OverlapModel *model, const char *word) {
                                          : STATUS_OK;
 }
 
+static Status fail_unbounded(const char *network, double doubt) {
+  return status_fail(
+      STATUS_INPUT,
+      "hybrid: '%s' is a TetrahedronPairNet, which gives no bound of its error, so it takes no "
+      "number: leave %g out, as in hybrid=%s",
+      network, doubt, network);
+}
+
 // `hybrid=NETWORK` and `hybrid:DOUBT=NETWORK`.
 static Status create_hybrid(OverlapModel *model, double doubt, const char *network,
                             const OverlapOptions *given) {
@@ -76,13 +84,36 @@ static Status create_hybrid(OverlapModel *model, double doubt, const char *netwo
                        "hybrid: its number, the relative error of V from which clipping begins, "
                        "is %g; expected a positive one",
                        options.doubt);
-  return overlap_models_create_with(model, "hybrid", network, &options);
+  TRY(overlap_models_create_with(model, "hybrid", network, &options));
+  if (isnan(doubt) || model->ops->has_bounds(model->self)) return STATUS_OK;
+  overlap_model_destroy(model);
+  return fail_unbounded(network, doubt);
 }
 
 static const OverlapOps *find_named(const char *name, size_t length) {
   for (int m = 0; m < model_count(); m++)
     if (strlen(models[m]->name) == length && strncmp(models[m]->name, name, length) == 0) return models[m];
   return NULL;
+}
+
+// What stands behind the wrappers: from a `hybrid=` on, else the model.
+static const char *skip_wrappers(const char *word) {
+  const OverlapWrapKind *kind;
+  double number;
+  for (const char *inner; (inner = overlap_source_inner(word)); word = inner)
+    if (overlap_wrap_kinds_find(word, &kind, &number) || kind == &overlap_wrap_doubt) break;
+  return word;
+}
+
+// `hybrid=both=geo`: what has a bound of its error is the network, not what stands round it.
+static Status fail_around(const char *inner) {
+  const char *behind = skip_wrappers(inner);
+  const bool is_hybrid = strncmp(behind, "hybrid", strlen("hybrid")) == 0;
+  return status_fail(STATUS_INPUT,
+                     "hybrid: '%s' tells no doubt: where the network has a bound of its error, write "
+                     "%.*s%s%s",
+                     inner, (int)(behind - inner), inner,
+                     is_hybrid ? "" : "hybrid=", is_hybrid ? behind : overlap_source_model(behind));
 }
 
 // A word with something before its model: a wrapper, or what a network is used as.
@@ -102,6 +133,10 @@ static Status create_round(OverlapModel *model, const char *word, const char *in
     TRY(overlap_foreign_create(&model->self, &model->ops, inner));
   else
     TRY(overlap_models_create_with(model, inner, NULL, options));
+  if (kind == &overlap_wrap_doubt && !is_foreign) {
+    overlap_model_destroy(model);
+    return fail_around(inner);
+  }
   if (kind == &overlap_wrap_fade && overlap_model_has_ghosts(model))
     TRY(overlap_wrap_create(model, &overlap_wrap_cut, NAN, inner));
   return overlap_wrap_create(model, kind, number, word);
@@ -125,6 +160,14 @@ Status overlap_models_create_with(OverlapModel *model, const char *word, const c
   if (ops->create) TRY(ops->create(&model->self, weights, options));
   model->ops = ops;
   return STATUS_OK;
+}
+
+bool overlap_models_lack_scale(const char *word) {
+  for (; word; word = overlap_source_inner(word)) {
+    const OverlapOps *ops = find_named(word, strcspn(word, "="));
+    if (ops && ops->lacks_scale) return true;
+  }
+  return false;
 }
 
 Status overlap_models_create(OverlapModel *model, const char *word) {

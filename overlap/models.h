@@ -17,4 +17,7 @@ Status overlap_models_create(OverlapModel *model, const char *word);
 Status overlap_models_create_with(OverlapModel *model, const char *word, const char *weights,
                                   const OverlapOptions *options);
 
+// Whether the model that a word names, or the network that it is used with, lacks_scale (overlap/ops.h).
+bool overlap_models_lack_scale(const char *word);
+
 #endif

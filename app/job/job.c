@@ -24,8 +24,6 @@
 #include "fem/model/build.h"
 #include "fem/run/checkpoint/checkpoint.h"
 #include "overlap/models.h"
-#include "overlap/source.h"
-#include "overlap/weights.h"
 
 static void raise_flag(int signal_number) {
   (void)signal_number;
@@ -95,14 +93,11 @@ static Status choose_directory(AppJob *job, const AppJobOptions *options, const 
 
 // A model that is for pairs of one size alone gives forces that mean nothing.
 static void warn_of_scale(const AppJob *job) {
-  int count;
-  const OverlapOps *const *models = overlap_models_list(&count);
-  const char *name = app_job_overlap(job);
-  for (int i = 0; name && i < count; i++)
-    if (strcmp(models[i]->name, overlap_source_model(name)) == 0 && models[i]->lacks_scale)
-      log_warning("%s: V of the overlap model '%s' does not scale with the size of the pair, so forces in a "
-                  "scene are meaningless; use 'clip' or 'geo' for forces",
-                  job->scene.path, name);
+  char source[PATH_MAX];
+  if (app_scene_overlap_source(&job->scene, source) && overlap_models_lack_scale(source))
+    log_warning("%s: V of the overlap model '%s' does not scale with the size of the pair, so forces in a "
+                "scene are meaningless; use 'clip' or 'geo' for forces",
+                job->scene.path, app_job_overlap(job));
 }
 
 Status app_job_open(AppJob *job, const AppJobOptions *options, const char *overlap,

@@ -25,6 +25,7 @@ typedef struct Other {
   int count, at[PORTION];
   double pairs[PORTION * SIZE];
   double volume[PORTION], gradient[PORTION * SIZE], hessian[PORTION * SQUARE], centroid[3 * PORTION];
+  unsigned flags[PORTION]; // 0 without clip
 } Other;
 
 static Status ask_other(const OverlapWrapMixture *mixture, const OverlapBatch *portion,
@@ -41,7 +42,9 @@ static Status ask_other(const OverlapWrapMixture *mixture, const OverlapBatch *p
                         .volume = other->volume,
                         .gradient = portion->gradient ? other->gradient : NULL,
                         .hessian = portion->hessian ? other->hessian : NULL,
-                        .centroid = portion->centroid ? other->centroid : NULL};
+                        .centroid = portion->centroid ? other->centroid : NULL,
+                        .flags = other->flags};
+  memset(other->flags, 0, sizeof other->flags);
   if (mixture->has_clip) return overlap_clip_ops.eval_batch(NULL, &asked);
   for (int k = 0; k < other->count; k++) {
     OverlapAnswer answer = overlap_ops_answer(&asked, k, NULL);
@@ -50,13 +53,13 @@ static Status ask_other(const OverlapWrapMixture *mixture, const OverlapBatch *p
   return STATUS_OK;
 }
 
-static unsigned flags_of(unsigned inner, bool has_clip, double share, double volume) {
+static unsigned flags_of(unsigned inner, unsigned other, bool has_clip, double share, double volume) {
   if (inner & OVERLAP_FLAT) return inner;
   if (volume == 0) return (inner & OVERLAP_UNSOUND) | OVERLAP_DISJOINT;
   inner &= ~(unsigned)OVERLAP_DISJOINT;
   if (has_clip && share >= 1) inner = OVERLAP_FALLBACK;
   if (has_clip && share < 1) inner |= OVERLAP_BLENDED;
-  return inner;
+  return inner | (other & OVERLAP_ENCLOSED);
 }
 
 static void mix(const OverlapBatch *portion, const OverlapWrapShares *shares, const Other *other, int k,
@@ -73,7 +76,8 @@ static void mix(const OverlapBatch *portion, const OverlapWrapShares *shares, co
                        other->volume[k] - *answer.volume, apart, other->hessian + SQUARE * k, answer.gradient,
                        answer.hessian);
   overlap_blend_move(share, other->volume[k], other->centroid + 3 * k, answer.volume, answer.centroid);
-  if (portion->flags) *answer.flags = flags_of(*answer.flags, has_clip, share, *answer.volume);
+  if (portion->flags)
+    *answer.flags = flags_of(*answer.flags, other->flags[k], has_clip, share, *answer.volume);
 }
 
 static Status mix_portion(const void *self, const OverlapBatch *portion, int first) {

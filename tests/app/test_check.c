@@ -59,6 +59,19 @@ START_TEST(a_curved_body_presses_harder_than_a_flat_one) {
 }
 END_TEST
 
+START_TEST(an_overlap_model_without_scale_is_told) {
+  static const char *const words[] = {"tpn-published", "both=tpn-published",
+                                      "fade:.1=tpn-published=" TETLAP_SOURCE_DIR
+                                      "/net/weights/tpn-published.safetensors",
+                                      "tpn-scene=" TETLAP_SOURCE_DIR "/net/weights/tpn-scene.safetensors"};
+  for (int i = 0; i < 4; i++) {
+    char sets[512];
+    snprintf(sets, sizeof sets, "--set contact.overlap=%s", words[i]);
+    ck_says("patch", sets, "does not scale with the size of the pair", i < 3);
+  }
+}
+END_TEST
+
 START_TEST(a_mesh_in_mm_among_metres_is_told) {
   ck_says("patch", "", "in mm", false);
   ck_says("patch", "--set bodies.upper.place.scale=1000",
@@ -74,6 +87,7 @@ int main(void) {
   tcase_add_test(cases, a_pressure_near_E_is_told_with_who_is_crushed);
   tcase_add_test(cases, a_blow_that_a_body_cannot_store_is_told);
   tcase_add_test(cases, a_curved_body_presses_harder_than_a_flat_one);
+  tcase_add_test(cases, an_overlap_model_without_scale_is_told);
   tcase_add_test(cases, a_mesh_in_mm_among_metres_is_told);
   return suite_run("check", cases, 30);
 }

@@ -118,6 +118,23 @@ START_TEST(fade_begins_at_touch) {
 }
 END_TEST
 
+// Beside a face of the outer one in the plane of one of its own: `coplanar` leaves the pair to clip.
+START_TEST(what_clip_finds_enclosed_stays_enclosed) {
+  static const double outside[12] = {0, 0, 0, 4, 0, 0, 0, 4, 0, 0, 0, 4};
+  static const char *const words[] = {"hybrid=placed=" TETLAP_MODEL_16, "coplanar=placed=" TETLAP_MODEL_16};
+  for (int v = 0; v < 12; v++) {
+    pairs[0][v] = 0.61 + 0.2 * (v / 3 == v % 3 + 1); // the first coordinate is what the model doubts by
+    pairs[0][12 + v] = outside[v];
+    if (_i == 1 && v % 3 == 2) pairs[0][v] -= 0.61;
+  }
+  ask("clip", pairs, VOLUMES, false, &other);
+  ask(words[_i], pairs, VOLUMES, false, &outer);
+  ck_assert_uint_eq(other.flags[0], OVERLAP_ENCLOSED);
+  ck_assert_uint_eq(outer.flags[0], OVERLAP_FALLBACK | OVERLAP_ENCLOSED);
+  ck_assert_near(outer.volume[0], other.volume[0], 1e-15);
+}
+END_TEST
+
 // Planes that coincide are clip's business; pairs in general position are not.
 START_TEST(coplanar_turns_to_clip_where_faces_lie_in_one_plane) {
   int general = 0;
@@ -222,7 +239,15 @@ START_TEST(what_cannot_be_said_is_refused) {
   expect_refused("fade:=geo", "'' before '=' is no number");
   expect_refused("both=", "a model is missing behind it");
   expect_refused("hybrid:0=geo", "expected");
-  expect_refused("hybrid=both=tpn", "'both=tpn' tells no doubt");
+  expect_refused("hybrid:5=tpn-scene", "takes no number: leave 5 out, as in hybrid=tpn-scene");
+  expect_refused("hybrid:.01=" TETLAP_SOURCE_DIR "/net/weights/tpn.safetensors",
+                 "is a TetrahedronPairNet, which gives no bound of its error");
+  expect_refused("both=hybrid:5=tpn-scene", "leave 5 out");
+  expect_refused("hybrid=both=geo", "where the network has a bound of its error, write both=hybrid=geo");
+  expect_refused("hybrid=both=fade:.05=tpn-scene=" TETLAP_SOURCE_DIR "/net/weights/tpn-scene.safetensors",
+                 "write both=fade:.05=hybrid=" TETLAP_SOURCE_DIR "/net/weights/tpn-scene.safetensors");
+  expect_refused("hybrid:.1=both=hybrid:.01=geo", "write both=hybrid:.01=geo");
+  expect_refused("hybrid=both=" TETLAP_MODEL_0, "tells no doubt: how far each V may be off");
   expect_refused("keep=geo", "'geo' gives no volume to disjoint pairs");
   expect_refused("derived=" TETLAP_MODEL_SPLIT, "gives no gradient");
   expect_refused("both=gea", "did you mean 'geo'");
@@ -236,6 +261,7 @@ int main(void) {
   tcase_add_test(cases, cut_answers_disjoint_pairs_and_leaves_the_others_alone);
   tcase_add_loop_test(cases, fade_begins_at_touch, 0, 3);
   tcase_add_test(cases, coplanar_turns_to_clip_where_faces_lie_in_one_plane);
+  tcase_add_loop_test(cases, what_clip_finds_enclosed_stays_enclosed, 0, 2);
   tcase_add_test(cases, hybrid_is_clip_where_a_model_of_yours_doubts);
   tcase_add_test(cases, placed_and_derived_choose_the_centroid);
   tcase_add_loop_test(cases, derivatives_are_those_of_what_comes_out, 0, 4);
