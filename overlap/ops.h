@@ -64,6 +64,7 @@ typedef struct OverlapPull {
   const double *by_centroid; // ∂g/∂x̄, or NULL: 0        (pair_count, 3)
   const double *by_gradient; // ∂g/∂(∇V), or NULL: 0     (pair_count, 2, 4, 3)
   double *slope;             // out: ∂g/∂x               (pair_count, 2, 4, 3)
+  const int *numbers;        // what messages call the pairs (pair_count); NULL: their places
 } OverlapPull;
 
 // Where the answer for one pair goes.
@@ -125,8 +126,8 @@ typedef struct OverlapOps {
   const char *weights;
   // What OverlapPull asks for; NULL: it cannot. Pairs that it answers unasked have the slope 0.
   Status (*eval_pull)(const void *self, const OverlapPull *pull);
-  // ∂x̄/∂x of pairs (count, 24), (count, 3, 24), of a model with a centroid of its own; 0 where V is 0. Called
-  // from several threads at once. NULL: eval_pull is asked, or there are none.
+  // ∂x̄/∂x of pairs (count, 24), (count, 3, 24), of a model with a centroid of its own; where V is 0 anything
+  // finite. Called from several threads at once. NULL: eval_pull is asked, or there are none.
   Status (*eval_slopes)(const void *self, int count, const double *pairs, double *slopes);
   // NULL: its parameters have no derivatives.
   const OverlapTraining *training;

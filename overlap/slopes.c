@@ -52,7 +52,8 @@ static Status pull_own(const OverlapModel *model, const OverlapBatch *batch, dou
                                                                .pairs = batch->pairs,
                                                                .by_volume = by,
                                                                .by_centroid = by + count,
-                                                               .slope = rows});
+                                                               .slope = rows,
+                                                               .numbers = batch->numbers});
     for (size_t i = 0; i < count && !status; i++)
       memcpy(slopes + ROWS * i + (size_t)(SIZE * c), rows + SIZE * i, SIZE * sizeof *rows);
   }
@@ -69,6 +70,9 @@ Status overlap_slopes_eval(const OverlapModel *model, const OverlapBatch *batch,
   if (!overlap_model_has_own_centroid(model))
     return overlap_portions_eval(batch, PORTION, true, eval_by_hessian, &asked);
   TRY(overlap_model_eval(model, batch));
-  if (!model->ops->eval_slopes) return pull_own(model, batch, slopes);
-  return overlap_portions_eval(batch, PORTION, true, eval_own, &asked);
+  TRY(model->ops->eval_slopes ? overlap_portions_eval(batch, PORTION, true, eval_own, &asked)
+                              : pull_own(model, batch, slopes));
+  for (size_t i = 0; i < (size_t)batch->pair_count; i++)
+    if (batch->volume[i] == 0) memset(slopes + ROWS * i, 0, ROWS * sizeof *slopes);
+  return STATUS_OK;
 }

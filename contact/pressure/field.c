@@ -304,17 +304,19 @@ void contact_field_turn_law(const ContactLayout *layout, const ContactPair *pair
   int width = is_shape ? 12 : 24;
   double step = contact_field_law_step() * (field->depths[0] + field->depths[1]), x[24], force[24];
   memset(matrix, 0, (size_t)(width * width) * sizeof *matrix);
-  for (int k = 0; k < width && step > 0; k++)
-    for (int side = 1; side >= -1; side -= 2) {
+  for (int k = 0; k < width && step > 0; k++) {
+    double ahead = coordinates[k] + step, behind = coordinates[k] - step, way = ahead - behind; // rounded
+    for (int side = 1; side >= -1 && way > 0; side -= 2) {
       ContactFieldPair moved;
       memcpy(x, coordinates, (size_t)width * sizeof *x);
-      x[k] += side * step;
+      x[k] = side > 0 ? ahead : behind;
       if (is_shape)
         contact_field_press_shape(layout, pair, time, x, &moved, force);
       else
         press_anew(layout, pair, x, force);
-      for (int r = 0; r < width; r++) matrix[width * r + k] -= side * force[r] / (2 * step);
+      for (int r = 0; r < width; r++) matrix[width * r + k] -= side * force[r] / way;
     }
+  }
   for (int r = 0; r < width && !is_shape; r++) fold_columns(layout, pair, matrix + width * r);
 }
 

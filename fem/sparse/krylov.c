@@ -81,20 +81,30 @@ static Status combine(FemKrylov *krylov, Triangle *triangle, int count, double *
   return krylov->precondition(krylov->self, sum, x);
 }
 
+static double remainder_of(const FemKrylov *krylov, const double *b, const double *product) {
+  double sum = 0;
+  for (int j = 0; j < krylov->count; j++) sum += (b[j] - product[j]) * (b[j] - product[j]);
+  return sqrt(sum);
+}
+
 Status fem_krylov_solve(FemKrylov *krylov, const double *b, double tolerance, double *x, double *residual) {
   Triangle triangle;
-  double whole = length_of(krylov, b);
+  double whole = length_of(krylov, b), estimate = 1;
   int count = 0;
-  *residual = 0;
+  if (residual) *residual = 0;
   memset(x, 0, (size_t)krylov->count * sizeof *x);
   if (whole == 0) return STATUS_OK;
   triangle.right[0] = whole;
   for (int j = 0; j < krylov->count; j++) krylov->basis[j] = b[j] / whole;
-  for (*residual = 1; count<FEM_KRYLOV_MOST && * residual> tolerance;) {
+  while (count < FEM_KRYLOV_MOST && estimate > tolerance) {
     TRY(extend(krylov, &triangle, count));
-    *residual = fabs(triangle.right[++count]) / whole;
+    estimate = fabs(triangle.right[++count]) / whole;
   }
   TRY(combine(krylov, &triangle, count, x));
-  if (isfinite(*residual)) return STATUS_OK;
+  if (residual) {
+    TRY(krylov->multiply(krylov->self, x, krylov->image));
+    *residual = remainder_of(krylov, b, krylov->image) / whole;
+  }
+  if (isfinite(estimate) && (!residual || isfinite(*residual))) return STATUS_OK;
   return status_fail(STATUS_SOLVER, "GMRES met what is not a number");
 }

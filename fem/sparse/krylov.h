@@ -19,8 +19,10 @@ enum { FEM_KRYLOV_MOST = 80 };
 Status fem_krylov_create(FemKrylov *krylov, int count); // STATUS_MEMORY
 void fem_krylov_destroy(FemKrylov *krylov);             // also of a zeroed one
 
-// x with |b − A x| ≤ tolerance |b|, or the best of FEM_KRYLOV_MOST directions. `*residual`: what is left, as
-// that share. STATUS_SOLVER: it is not a number.
+// x with |b − A x| ≤ tolerance |b| by GMRES' own estimate, or the best of FEM_KRYLOV_MOST
+// directions; where A or the preconditioner is singular, the estimate may be 0 and x wrong. `*residual`:
+// |b − A x| / |b| by one more product, for the caller to judge; NULL: not needed. STATUS_SOLVER: it, or the
+// estimate, is not a number.
 Status fem_krylov_solve(FemKrylov *krylov, const double *b, double tolerance, double *x, double *residual);
 
 #endif

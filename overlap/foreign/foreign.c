@@ -91,7 +91,6 @@ static Status fail_not_finite(const Foreign *foreign, int pair, const char *what
 }
 
 // Infinite: it knows nothing of the pair.
-// It may be infinite.
 static Status check_doubt(const Foreign *foreign, double doubt, int i) {
   return doubt >= 0
              ? STATUS_OK
@@ -239,7 +238,7 @@ static Status pull(Foreign *foreign, const OverlapPull *asked) {
   TRY(overlap_foreign_request_pull(request, &foreign->port, foreign->name, wanted));
   for (size_t k = 0; k < count; k++)
     if (!are_finite(SIZE, arrays[OVERLAP_FOREIGN_SLOPE] + SIZE * k))
-      return fail_not_finite(foreign, (int)k, "its pull-back");
+      return fail_not_finite(foreign, asked->numbers ? asked->numbers[k] : (int)k, "its pull-back");
   memcpy(asked->slope, arrays[OVERLAP_FOREIGN_SLOPE], SIZE * bytes);
   return STATUS_OK;
 }

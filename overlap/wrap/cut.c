@@ -128,9 +128,10 @@ static Status eval(OverlapWrap *wrap, const OverlapBatch *batch) {
 static Status eval_pull(OverlapWrap *wrap, const OverlapPull *pull) {
   const size_t n = (size_t)pull->pair_count;
   size_t count = 0;
-  TRY(overlap_wrap_reserve(wrap, (3 * SIZE + 4) * n, n));
+  TRY(overlap_wrap_reserve(wrap, (3 * SIZE + 4) * n, 2 * n));
   double *pairs = wrap->room, *by_gradient = pairs + SIZE * n, *slope = by_gradient + SIZE * n,
          *by_centroid = slope + SIZE * n, *by_volume = by_centroid + 3 * n;
+  int *numbers = wrap->integers + n;
   for (size_t i = 0; i < n; i++) {
     memset(pull->slope + SIZE * i, 0, SIZE * sizeof *pull->slope);
     if (answer_unasked(wrap, pull->pairs + SIZE * i, NAN)) continue;
@@ -138,6 +139,7 @@ static Status eval_pull(OverlapWrap *wrap, const OverlapPull *pull) {
     by_volume[count] = pull->by_volume[i];
     if (pull->by_centroid) copy(pull->by_centroid + 3 * i, by_centroid + 3 * count, 3);
     if (pull->by_gradient) copy(pull->by_gradient + SIZE * i, by_gradient + SIZE * count, SIZE);
+    numbers[count] = pull->numbers ? pull->numbers[i] : (int)i;
     wrap->integers[count++] = (int)i;
   }
   if (count == 0) return STATUS_OK;
@@ -147,7 +149,8 @@ static Status eval_pull(OverlapWrap *wrap, const OverlapPull *pull) {
                                                 .by_volume = by_volume,
                                                 .by_centroid = pull->by_centroid ? by_centroid : NULL,
                                                 .by_gradient = pull->by_gradient ? by_gradient : NULL,
-                                                .slope = slope}));
+                                                .slope = slope,
+                                                .numbers = numbers}));
   for (size_t k = 0; k < count; k++)
     copy(slope + SIZE * k, pull->slope + SIZE * (size_t)wrap->integers[k], SIZE);
   return STATUS_OK;

@@ -28,10 +28,13 @@ static Status eval(OverlapWrap *wrap, const OverlapBatch *batch) {
 }
 
 static Status eval_slopes(const OverlapWrap *wrap, int count, const double *pairs, double *slopes) {
+  static const double none[SIZE * SIZE] = {0};
   (void)wrap;
   for (int i = 0; i < count; i++) {
     OverlapBlend clip;
-    TRY(overlap_blend_clip(pairs + SIZE * (ptrdiff_t)i, &clip));
+    const double *pair = pairs + SIZE * (ptrdiff_t)i;
+    TRY(overlap_blend_clip(pair, &clip));
+    if (!(clip.volume > 0)) overlap_blend_derive(pair, 1, none, none, clip.slopes); // of the boxes
     memcpy(slopes + ROWS * (ptrdiff_t)i, clip.slopes, sizeof clip.slopes);
   }
   return STATUS_OK;

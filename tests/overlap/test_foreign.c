@@ -18,6 +18,7 @@
 #include "base/machine/interrupt.h"
 #include "base/random.h"
 #include "overlap/models.h"
+#include "overlap/slopes.h"
 #include "overlap/source.h"
 
 enum { PAIRS = 300 };
@@ -257,6 +258,36 @@ START_TEST(a_pull_back_gives_the_gradient_the_hessian_and_that_of_the_centroid) 
   overlap_model_destroy(&model);
   open_model(&model, TETLAP_MODEL_0);
   ck_assert(!model.ops->eval_pull && !overlap_model_has_hessian(&model));
+  overlap_model_destroy(&model);
+}
+END_TEST
+
+// The library is asked for those pairs alone that overlap; the last one's slope is none.
+START_TEST(a_pull_back_that_is_no_number_is_told_with_its_pair) {
+  OverlapModel model;
+  static double slope[PAIRS][24], slopes[PAIRS][3][24];
+  char says[64];
+  OverlapBatch batch = batch_of(PAIRS, true, true);
+  open_model(&model, TETLAP_MODEL_17);
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  int last = PAIRS - 1, asked = 0;
+  while (flags[last] & OVERLAP_DISJOINT) last--;
+  for (int i = 0; i < PAIRS; i++) asked += !(flags[i] & OVERLAP_DISJOINT);
+  ck_assert_int_lt(asked - 1, last);
+  const OverlapPull pull = {.pair_count = PAIRS,
+                            .pairs = pairs[0],
+                            .by_volume = volume,
+                            .by_centroid = centroid[0],
+                            .slope = slope[0]};
+  snprintf(says, sizeof says, "pair %d: its pull-back is not a finite number", last);
+  ck_assert_int_eq(model.ops->eval_pull(model.self, &pull), STATUS_SOLVER);
+  ck_assert_msg(strstr(status_message(), says), "%s", status_message());
+  int numbers[PAIRS];
+  for (int i = 0; i < PAIRS; i++) numbers[i] = 1000 + i;
+  batch.numbers = numbers;
+  snprintf(says, sizeof says, "pair %d: its pull-back is not a finite number", 1000 + last);
+  ck_assert_int_eq(overlap_slopes_eval(&model, &batch, slopes[0][0]), STATUS_SOLVER);
+  ck_assert_msg(strstr(status_message(), says), "%s", status_message());
   overlap_model_destroy(&model);
 }
 END_TEST
@@ -689,6 +720,7 @@ int main(void) {
   tcase_add_test(cases, the_example_writes_what_it_is_asked_for_and_no_more);
   tcase_add_test(cases, what_a_model_does_to_its_pairs_stays_with_it);
   tcase_add_test(cases, a_pull_back_gives_the_gradient_the_hessian_and_that_of_the_centroid);
+  tcase_add_test(cases, a_pull_back_that_is_no_number_is_told_with_its_pair);
   tcase_add_test(cases, stress_holds_the_pull_back_of_centroids_to_differences);
   tcase_add_test(cases, a_library_is_told_where_a_scenes_pairs_are_from);
   tcase_add_test(cases, volumes_that_none_can_have_are_flagged);

@@ -511,6 +511,25 @@ START_TEST(an_unknown_name_is_an_error_that_lists_the_known_ones) {
 }
 END_TEST
 
+static Status refuse_pair(const void *self, const double pair[24], const OverlapAnswer *answer) {
+  (void)self, (void)pair, (void)answer;
+  return status_fail(STATUS_SOLVER, "it does not like it");
+}
+
+START_TEST(messages_call_pairs_as_the_batch_does) {
+  static const OverlapOps ops = {.name = "refusing", .eval_pair = refuse_pair, .rejects_disjoint = true};
+  const OverlapModel model = {.ops = &ops};
+  const int numbers[2] = {70, 71};
+  double pairs[2][24] = {{0}}, volumes[2];
+  OverlapBatch batch = {.pair_count = 2, .pairs = pairs[0], .volume = volumes, .numbers = numbers};
+  ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_SOLVER);
+  ck_assert_str_eq(status_message(), "overlap model 'refusing': pair 70: it does not like it");
+  pairs[1][3] = NAN;
+  ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_INPUT);
+  ck_assert_msg(strstr(status_message(), "pair 71, tetrahedron 0, vertex 1"), "%s", status_message());
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("overlap_models");
   int count;
@@ -530,5 +549,6 @@ int main(void) {
   tcase_add_loop_test(cases, a_batch_says_what_each_pair_says, 0, count);
   tcase_add_loop_test(cases, an_empty_batch_is_fine, 0, count);
   tcase_add_test(cases, an_unknown_name_is_an_error_that_lists_the_known_ones);
+  tcase_add_test(cases, messages_call_pairs_as_the_batch_does);
   return suite_run("overlap models", cases, 60);
 }

@@ -10,6 +10,7 @@
 #include "folder.h"
 #include "overlap/invariant.h"
 #include "overlap/models.h"
+#include "overlap/separation.h"
 #include "overlap/slopes.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE, PAIRS = 300 };
@@ -92,6 +93,35 @@ START_TEST(slopes_agree_with_differences) {
 }
 END_TEST
 
+// The network gives volumes to disjoint pairs, too; faded in, none to these.
+START_TEST(slopes_where_clip_finds_no_overlap) {
+  static const char *const words[] = {"placed=tpn-published", "placed=fade=tpn-published"};
+  OverlapModel model;
+  Random random = random_seeded(9, 0);
+  int compared = 0, none = 0;
+  ck_assert_ok(overlap_models_create(&model, words[_i]));
+  for (int n = 0; n < 8 * PAIRS; n++) {
+    double pair[SIZE], volume, gradient[SIZE], slopes[3 * SIZE];
+    draw(&random, pair);
+    for (int v = 0; v < SIZE / 2; v += 3) pair[v] += 0.5;
+    if (overlap_separation_pair(pair, 0) < 1e-3) continue;
+    ck_assert_ok(overlap_slopes_eval(
+        &model, &(OverlapBatch){.pair_count = 1, .pairs = pair, .volume = &volume, .gradient = gradient},
+        slopes));
+    none += volume == 0;
+    for (int i = 0; i < SIZE; i++) {
+      double found[3] = {0};
+      if (volume > 0 && differ(&model, pair, i, found) > 1e-7) continue;
+      compared += volume > 0;
+      for (int c = 0; c < 3; c++) ck_assert_near(slopes[SIZE * c + i], found[c], 1e-8);
+    }
+  }
+  if (_i == 0) ck_assert_int_gt(compared, 200);
+  if (_i == 1) ck_assert_int_gt(none, 20);
+  overlap_model_destroy(&model);
+}
+END_TEST
+
 // ---- By weights.
 
 enum { TRAINED = 20 };
@@ -168,6 +198,7 @@ END_TEST
 int main(void) {
   TCase *cases = tcase_create("slopes");
   tcase_add_loop_test(cases, slopes_agree_with_differences, 0, sizeof names / sizeof *names);
+  tcase_add_loop_test(cases, slopes_where_clip_finds_no_overlap, 0, 2);
   tcase_add_checked_fixture(cases, folder_make, folder_remove);
   tcase_add_loop_test(cases, slopes_by_weights_agree_with_differences, 0, 2);
   return suite_run("slopes", cases, 60);

@@ -208,13 +208,12 @@ static Status multiply(void *self, const double *x, double *y) {
 // Newton's step from u and v, whose residual is in `force`; `is_fresh`: with the matrix there.
 static Status find_step(FemReplay *replay, double time, const double *u, const double *v, double c,
                         bool is_fresh) {
-  double residual;
   if (is_fresh) TRY(fem_equilibrium_factorise_moving(&replay->equilibrium, time, u, v, c, c * c));
   if (replay->is_near) return fem_equilibrium_solve(&replay->equilibrium, replay->force, replay->step);
   replay->c = c;
   replay->middle = u;
   replay->speed = v;
-  return fem_krylov_solve(&replay->krylov, replay->force, INEXACT, replay->step, &residual);
+  return fem_krylov_solve(&replay->krylov, replay->force, INEXACT, replay->step, NULL);
 }
 
 static Status balance(FemReplay *replay, int k) {

@@ -22,8 +22,11 @@ enum {
   PULLS,
   PULLS_WRONG,
   KNOWS,
-  DOUBTS
+  DOUBTS,
+  PULLS_NAN
 };
+
+enum { PULLS_BACK = WRONG == PULLS || WRONG == PULLS_WRONG || WRONG == PULLS_NAN };
 
 static size_t told_count; // of pairs whose origins were as they should be
 
@@ -50,7 +53,7 @@ static int evaluate(void *self, const TetlapModelBatch *batch, char *message, si
     if (batch->gradient) batch->gradient[24 * batch->count] = 1;
   }
   // V = 1e-3 Σ x², x̄ the mean of the vertices: their derivatives come by pull_back alone.
-  for (size_t i = 0; (WRONG == PULLS || WRONG == PULLS_WRONG) && i < batch->count; i++) {
+  for (size_t i = 0; PULLS_BACK && i < batch->count; i++) {
     batch->volume[i] = 0;
     for (int c = 0; batch->centroid && c < 3; c++) batch->centroid[3 * i + c] = 0;
     for (int v = 0; v < 24; v++) {
@@ -90,6 +93,7 @@ static int pull_back(void *self, const TetlapModelPull *pull, char *message, siz
     if (pull->by_gradient) pull->slope[i] += 2e-3 * pull->by_gradient[i];
   }
   if (WRONG == PULLS_WRONG && pull->by_centroid) pull->slope[0] += 1;
+  if (WRONG == PULLS_NAN && pull->by_centroid) pull->slope[24 * pull->count - 1] = NAN;
   return 0;
 }
 
@@ -99,19 +103,19 @@ const TetlapModel *another_name(void) {
 #else
 const TetlapModel *tetlap_model(void) {
 #endif
-  static const TetlapModel model = {
-      .size = WRONG == NO_SIZE   ? 0
-              : WRONG == NOTHING ? offsetof(TetlapModel, pull_back) // an older header's
-                                 : sizeof model,
-      .abi = WRONG == OTHER_ABI ? 99 : TETLAP_MODEL_ABI,
-      .name = "wrong",
-      .gives = WRONG == PULLS || WRONG == PULLS_WRONG ? TETLAP_MODEL_CENTROID | TETLAP_MODEL_CURVATURE
-               : WRONG == DOUBTS                      ? TETLAP_MODEL_DOUBT
-               : WRONG == KNOWS                       ? TETLAP_MODEL_CENTROID | TETLAP_MODEL_ORIGINS
-                                                      : TETLAP_MODEL_GRADIENT,
-      .open = open_it,
-      .close = close_it,
-      .evaluate = WRONG == NO_EVALUATE ? NULL : evaluate,
-      .pull_back = WRONG == PULLS || WRONG == PULLS_WRONG ? pull_back : NULL};
+  static const TetlapModel model = {.size = WRONG == NO_SIZE ? 0
+                                            : WRONG == NOTHING
+                                                ? offsetof(TetlapModel, pull_back) // an older header's
+                                                : sizeof model,
+                                    .abi = WRONG == OTHER_ABI ? 99 : TETLAP_MODEL_ABI,
+                                    .name = "wrong",
+                                    .gives = PULLS_BACK ? TETLAP_MODEL_CENTROID | TETLAP_MODEL_CURVATURE
+                                             : WRONG == DOUBTS ? TETLAP_MODEL_DOUBT
+                                             : WRONG == KNOWS  ? TETLAP_MODEL_CENTROID | TETLAP_MODEL_ORIGINS
+                                                               : TETLAP_MODEL_GRADIENT,
+                                    .open = open_it,
+                                    .close = close_it,
+                                    .evaluate = WRONG == NO_EVALUATE ? NULL : evaluate,
+                                    .pull_back = PULLS_BACK ? pull_back : NULL};
   return &model;
 }
