@@ -81,6 +81,22 @@ START_TEST(a_mesh_in_mm_among_metres_is_told) {
 }
 END_TEST
 
+// Blocks of 5 cm: of 11 points 1 cm apart, and of 21, those from z = 0 to 5 cm are in the lower one.
+START_TEST(lines_are_told_with_how_many_points_they_have) {
+  const char *const lines =
+      "--set 'bodies.lower.lines=[{name: up, from: [0.05, 0.05, 0], to: [0.05, 0.05, 0.1], "
+      "points: 11}, {name: past, from: [0.02, 0.02, 0], to: [0.02, 0.02, 0.2], points: 21}]'";
+  char json[512];
+  snprintf(json, sizeof json, "%s --json", lines);
+  ck_says("patch", "", "line '", false);
+  ck_says("patch", lines, "line 'up': 6 of 11 points in the body\n", true);
+  ck_says("patch", lines, "line 'past': 6 of 21 points in the body\n", true);
+  ck_says("patch", lines, "note: line 'past' has 6 of its 21 points in the body", true);
+  ck_says("patch", lines, "note: line 'up'", false);
+  ck_says("patch", json, "\"points_in_body\": 6", true);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("check");
   tcase_add_test(cases, every_body_has_its_box);
@@ -89,5 +105,6 @@ int main(void) {
   tcase_add_test(cases, a_curved_body_presses_harder_than_a_flat_one);
   tcase_add_test(cases, an_overlap_model_without_scale_is_told);
   tcase_add_test(cases, a_mesh_in_mm_among_metres_is_told);
+  tcase_add_test(cases, lines_are_told_with_how_many_points_they_have);
   return suite_run("check", cases, 30);
 }

@@ -24,7 +24,7 @@
 #include "fem/scene/drive.h"
 #include "fem/sparse/solver.h"
 
-enum { MAX_NOTES = 24, MAX_THIN = 6 };
+enum { MAX_NOTES = 32, MAX_THIN = 6, MAX_LINES = 6 };
 // Elements through the thickness from which on linear ones bend as they should, roughly.
 static const double ENOUGH_LAYERS = 3.5;
 // A pressure over E from which on a body is told to be crushed: at half of it, it has half its height.
@@ -44,6 +44,7 @@ typedef struct Notes {
   char overlaps[FEM_RUN_START_TOLD_COUNT][FEM_RUN_START_TEXT_SIZE];
   char thin[MAX_THIN][512];
   char crushed[512], far_larger[512];
+  char lines[MAX_LINES][256];
 } Notes;
 
 static void note(Notes *notes, bool is_true, const char *text) {
@@ -181,6 +182,20 @@ static void note_units(const FemModel *model, Notes *notes) {
   note(notes, ratio > FAR_LARGER, notes->far_larger);
 }
 
+// Lines that miss most of their body.
+static void note_lines(const FemModel *model, Notes *notes) {
+  for (int l = 0, k = 0; l < model->line_count && k < MAX_LINES; l++) {
+    const FemLine *line = &model->lines[l];
+    if (!(2 * line->count < line->def->points)) continue;
+    snprintf(
+        notes->lines[k], sizeof notes->lines[k],
+        "line '%.64s' has %d of its %d points in the body: from and to are places [m] of the body as placed, "
+        "at rest; is that meant?",
+        line->def->name, line->count, line->def->points);
+    note(notes, true, notes->lines[k++]);
+  }
+}
+
 static Notes take_notes(const AppJob *job) {
   const FemSceneDef *scene = &job->scene;
   int solids = scene->body_count + scene->obstacle_count;
@@ -260,6 +275,20 @@ static void print_part(const FemModel *model, int p, const FemBodyDef *def) {
   if (part->damping > 0) printf("  %-12s damping β %g s\n", "", part->damping);
 }
 
+// Whether a body carries a line.
+static bool has_line(const FemBodyDef *def, const FemLine *line) {
+  return line->def >= def->lines && line->def < def->lines + def->line_count;
+}
+
+static void print_lines(const FemModel *model, const FemBodyDef *def) {
+  for (int l = 0; l < model->line_count; l++) {
+    const FemLine *line = &model->lines[l];
+    if (has_line(def, line))
+      printf("  %-12s line '%s': %d of %d points in the body\n", "", line->def->name, line->count,
+             line->def->points);
+  }
+}
+
 static void print_body(const AppJob *job, int b) {
   const FemModelBody *body = &job->model.bodies[b];
   const FemBodyDef *def = &job->scene.bodies[b];
@@ -277,6 +306,7 @@ static void print_body(const AppJob *job, int b) {
   for (int p = body->part_begin; p < body->part_end; p++) print_part(&job->model, p, def);
   if (prescribed.fixed + prescribed.driven > 0)
     printf("  %-12s %d coordinates fixed, %d driven\n", "", prescribed.fixed, prescribed.driven);
+  print_lines(&job->model, def);
 }
 
 static void print_obstacle(const AppJob *job, int o) {
@@ -392,6 +422,19 @@ static void record_part(const FemModel *model, int p, const FemBodyDef *def, Rec
   record_number(record, "mass", part->mass);
 }
 
+static void record_lines(const FemModel *model, const FemBodyDef *def, Record *record) {
+  if (def->line_count == 0) return;
+  RecordList *lines = record_list(record, "lines");
+  for (int l = 0; l < model->line_count; l++) {
+    const FemLine *line = &model->lines[l];
+    if (!has_line(def, line)) continue;
+    Record *item = record_append(lines);
+    record_text(item, "name", line->def->name);
+    record_integer(item, "points", line->def->points);
+    record_integer(item, "points_in_body", line->count);
+  }
+}
+
 static void record_body(const AppJob *job, int b, Record *record) {
   const FemModelBody *body = &job->model.bodies[b];
   const FemBodyDef *def = &job->scene.bodies[b];
@@ -414,6 +457,7 @@ static void record_body(const AppJob *job, int b, Record *record) {
     record_part(&job->model, p, def, record_append(materials));
   record_integer(record, "fixed_coordinates", prescribed.fixed);
   record_integer(record, "driven_coordinates", prescribed.driven);
+  record_lines(&job->model, def, record);
 }
 
 static void record_effects(const FemSceneDef *scene, RecordList *list) {
@@ -514,6 +558,7 @@ static Status check(const Options *options) {
   if (!status) status = note_thin(&job, &notes);
   if (!status) status = note_crushed(&job, &notes);
   note_units(&job.model, &notes);
+  note_lines(&job.model, &notes);
   if (status) {
     app_job_close(&job);
     return status;
