@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Libraries that are wrong in one way each (tests/overlap/test_foreign.c), chosen by WRONG.
+// Libraries that are wrong in one way each (test_foreign_library.c), chosen by WRONG.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Models of tests/overlap/test_foreign.c."""
+"""Models of test_foreign_process.c."""
 
 import os
 import subprocess
