@@ -41,12 +41,13 @@ static double megabytes_of(const AppGradientAnswer *answer) {
 static Status add_step(AppGradientAnswer *answer, const FemRunProgress *progress) {
   TRY(fem_replay_steps_add(&answer->steps, progress->system));
   double kept = megabytes_of(answer), most = answer->most_megabytes;
+  int count = answer->steps.count - 1;
   if (!(most > 0 && kept > most)) return STATUS_OK;
   return status_fail(
       STATUS_INPUT,
-      "--memory: up to t = %.6g s, %d steps, a replay keeps %.4g MB, more than %.4g MB; allow more, "
+      "--memory: up to t = %.6g s, %d step%s, a replay keeps %.4g MB, more than %.4g MB; allow more, "
       "take goals at an earlier time (--at), or longer steps (time.tolerance, output.frames)",
-      progress->time, answer->steps.count - 1, kept, most);
+      progress->time, count, count == 1 ? "" : "s", kept, most);
 }
 
 static Status at_step(void *observer, const FemRunProgress *progress) {
@@ -65,7 +66,8 @@ Status app_gradient_answer(AppGradientAnswer *answer, const FemModel *model, con
   answer->most_megabytes = words->most_megabytes;
   Status status = app_gradient_run(model, &answer->def, &run, &result);
   if (!status && fem_gradient_is_path(model)) {
-    log_info("a replay of %d steps keeps %.4g MB", answer->steps.count - 1, megabytes_of(answer));
+    int count = answer->steps.count - 1;
+    log_info("a replay of %d step%s keeps %.4g MB", count, count == 1 ? "" : "s", megabytes_of(answer));
     status = fem_path_differentiate(&answer->gradient, model, &answer->def, &answer->steps);
   }
   if (!status && !answer->gradient.values)

@@ -180,9 +180,8 @@ static bool is_of_law(const FemModel *model, const char *key, const FemParameter
   return !law || (law->kind <= CONTACT_LAW_TABLE && strstr(key, laws[law->kind]) != NULL);
 }
 
-static Status fail_parameter(const char *key) {
-  return status_fail(STATUS_INPUT, "no derivative by '%s'; there are, with K 0 to 2, %s", key,
-                     app_gradient_keys);
+static Status fail_key(void) {
+  return status_fail(STATUS_INPUT, "no derivative by it; there are, with K 0 to 2, %s", app_gradient_keys);
 }
 
 // The number of NAME in "bodies.NAME.…"; `rest` is what follows the name, which ends at the first dot.
@@ -190,7 +189,7 @@ static Status find_owner(const FemSceneDef *scene, const char *key, const char *
                          int *number, const char **rest) {
   const char *name = key + strlen(list);
   const char *dot = strchr(name, '.');
-  if (!dot) return fail_parameter(key);
+  if (!dot) return fail_key();
   *rest = dot + 1;
   return app_gradient_find_name(scene, name, (size_t)(dot - name), begin, end, number);
 }
@@ -227,21 +226,25 @@ static Status read_owned(const FemModel *model, const char *key, FemParameter *p
     parameter->obstacle -= scene->body_count;
     is_known = find_key(rest, obstacle_keys, of_obstacle, parameter);
   }
-  if (!is_known || !is_in_range(parameter)) return fail_parameter(key);
+  if (!is_known || !is_in_range(parameter)) return fail_key();
   if (is_of_part(parameter)) TRY(find_part(model, item, parameter));
   if (is_of_kind(scene, rest, parameter)) return STATUS_OK;
   return status_fail(STATUS_INPUT, "the scene does not have this key");
 }
 
-Status app_gradient_read_parameter(const FemModel *model, const char *key, FemParameter *parameter) {
+static Status read_parameter(const FemModel *model, const char *key, FemParameter *parameter) {
   static const char *const lists[] = {"bodies.", "obstacles."};
-  *parameter = (FemParameter){.body = -1, .part = -1, .obstacle = -1, .item = -1};
   for (int k = 0; k < 2; k++)
-    if (strncmp(key, lists[k], strlen(lists[k])) == 0)
-      return status_prefix(read_owned(model, key, parameter), "%s", key);
-  if (!find_key(key, scene_keys, sizeof scene_keys / sizeof *scene_keys, parameter))
-    return fail_parameter(key);
-  if (!is_in_range(parameter)) return fail_parameter(key);
+    if (strncmp(key, lists[k], strlen(lists[k])) == 0) return read_owned(model, key, parameter);
+  if (!find_key(key, scene_keys, sizeof scene_keys / sizeof *scene_keys, parameter)) return fail_key();
+  if (!is_in_range(parameter)) return fail_key();
   if (!fem_parameter_is_of_law(parameter) || is_of_law(model, key, parameter)) return STATUS_OK;
-  return status_fail(STATUS_INPUT, "%s: the scene does not have this key", key);
+  return status_fail(STATUS_INPUT, "the scene does not have this key");
+}
+
+Status app_gradient_read_parameter(const FemModel *model, const char *key, FemParameter *parameter) {
+  *parameter = (FemParameter){.body = -1, .part = -1, .obstacle = -1, .item = -1};
+  Status status = read_parameter(model, key, parameter);
+  if (!status) status = fem_parameter_check(model, parameter);
+  return status_prefix(status, "%s", key);
 }

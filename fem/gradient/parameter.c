@@ -109,18 +109,25 @@ static bool is_damping(const FemParameter *parameter) {
 
 static Status check_stiffness(const FemModel *model) {
   const FemContactDef *contact = contact_of(model);
-  if (!contact->is_on) return status_fail(STATUS_INPUT, "contact.stiffness: the scene has no contact");
+  if (!contact->is_on) return status_fail(STATUS_INPUT, "the scene has no contact");
   if (contact->law.law.kind == CONTACT_LAW_LINEAR && contact->stiffness == 0)
     return status_fail(STATUS_INPUT, "contact.stiffness is chosen from the bodies: write its value into the "
                                      "scene (`tetlap check` says it) for a derivative by it");
   return STATUS_OK;
 }
 
+// The entry of contact.pairs that a parameter names, if it names one.
+static Status check_entry(const FemModel *model, const FemParameter *parameter) {
+  const FemContactDef *contact = contact_of(model);
+  if (!contact->is_on) return status_fail(STATUS_INPUT, "the scene has no contact");
+  if (parameter->item < contact->pair_count) return STATUS_OK;
+  return status_fail(STATUS_INPUT, "contact.pairs has %d entries, no contact.pairs[%d]", contact->pair_count,
+                     parameter->item);
+}
+
 static Status check_pair(const FemModel *model, const FemParameter *parameter) {
   const FemContactDef *contact = contact_of(model);
-  if (!contact->is_on || parameter->item >= contact->pair_count)
-    return status_fail(STATUS_INPUT, "contact.pairs[%d].stiffness: there are %d pairs", parameter->item,
-                       contact->is_on ? contact->pair_count : 0);
+  TRY(check_entry(model, parameter));
   if (contact->pairs[parameter->item].stiffness > 0) return STATUS_OK;
   return status_fail(STATUS_INPUT, "contact.pairs[%d] has no stiffness of its own", parameter->item);
 }
@@ -128,10 +135,7 @@ static Status check_pair(const FemModel *model, const FemParameter *parameter) {
 static Status check_friction(const FemModel *model, const FemParameter *parameter) {
   const FemContactDef *contact = contact_of(model);
   bool is_pair = parameter->kind == FEM_PARAMETER_PAIR_FRICTION;
-  if (!contact->is_on) return status_fail(STATUS_INPUT, "contact.friction: the scene has no contact");
-  if (is_pair && parameter->item >= contact->pair_count)
-    return status_fail(STATUS_INPUT, "contact.pairs[%d].friction: there are %d pairs", parameter->item,
-                       contact->pair_count);
+  TRY(check_entry(model, parameter));
   if ((is_pair ? contact->pairs[parameter->item].friction.coefficient : contact->friction.coefficient) > 0)
     return STATUS_OK;
   return status_fail(STATUS_INPUT, "%s is not given or 0, where it has no derivative: give it a value",
@@ -140,7 +144,8 @@ static Status check_friction(const FemModel *model, const FemParameter *paramete
 
 static Status check_law(const FemModel *model, const FemParameter *parameter) {
   const ContactLaw *law = fem_parameter_law(model, parameter);
-  if (!law) return status_fail(STATUS_INPUT, "the scene has no such law of contact");
+  TRY(check_entry(model, parameter));
+  if (!law) return status_fail(STATUS_INPUT, "%s has no law", parameter->item < 0 ? "contact" : "the pair");
   if (parameter->kind == FEM_PARAMETER_LAW_EXPONENT && !(law->exponent > 1))
     return status_fail(STATUS_INPUT, "the law's exponent is 1, below which there is no law: no derivative");
   bool is_of_row = parameter->row > 0 && parameter->row < law->table_count && parameter->component == 1;

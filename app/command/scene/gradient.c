@@ -120,10 +120,11 @@ static void print_head(const Answer *answer, int g) {
   const FemGradient *gradient = &answer->found.gradient;
   const char *word = answer->options->words.of[g];
   char text[64];
+  int count = answer->found.steps.count - 1;
   printf("g = %s = %.10g %s; residual of the adjoint %.1e, of the forces %.1e", word, gradient->values[g],
          app_gradient_unit(&answer->found.goals[g], word), gradient->residuals[g], gradient->unbalanced);
   if (answer->found.steps.count > 0)
-    printf("; a replay of %d steps%s\n", answer->found.steps.count - 1,
+    printf("; a replay of %d step%s%s\n", count, count == 1 ? "" : "s",
            switches_of(gradient, text, sizeof text));
   else
     printf(", of the matrix %.1e\n", gradient->mismatches[g]);

@@ -173,12 +173,12 @@ static void refuse(const char *override, const char *by, const char *why) {
   SceneRun scene;
   FemParameter parameter;
   FemReplaySteps steps = {0};
-  FemGradient gradient;
+  FemGradient gradient = {0};
   scene_open(&scene, "gradient_motion", (const char *const[]){override, NULL});
   Status status = app_gradient_read_parameter(&scene.model, by, &parameter);
-  ck_assert_ok(status);
-  status = fem_path_differentiate(&gradient, &scene.model,
-                                  &(FemGradientDef){NULL, &parameter, 0, 1, false, false}, &steps);
+  if (!status)
+    status = fem_path_differentiate(&gradient, &scene.model,
+                                    &(FemGradientDef){NULL, &parameter, 0, 1, false, false}, &steps);
   ck_assert_int_eq(status, STATUS_INPUT);
   ck_assert_msg(strstr(status_message(), why) != NULL, "%s: %s", override, status_message());
   fem_gradient_destroy(&gradient);
