@@ -65,7 +65,8 @@ static int first_not_finite(const OverlapBatch *batch) {
 static Status check_finite(const OverlapBatch *batch) {
   int bad = first_not_finite(batch);
   return bad == batch->pair_count ? STATUS_OK
-                                  : fail_not_finite(bad, batch->pairs + (size_t)bad * OVERLAP_PAIR_SIZE);
+                                  : fail_not_finite(batch->numbers ? batch->numbers[bad] : bad,
+                                                    batch->pairs + (size_t)bad * OVERLAP_PAIR_SIZE);
 }
 
 static Status eval_one(const OverlapModel *model, const OverlapBatch *batch, int i) {
@@ -98,7 +99,9 @@ static Status eval_portion(const void *self, const OverlapBatch *portion, int fi
       write_disjoint(portion, i);
     else
       status = eval_one(model, portion, i);
-    if (status) return status_prefix(status, "overlap model '%s': pair %d", model->ops->name, first + i);
+    if (status)
+      return status_prefix(status, "overlap model '%s': pair %d", model->ops->name,
+                           portion->numbers ? portion->numbers[i] : first + i);
   }
   return STATUS_OK;
 }
