@@ -21,12 +21,17 @@ def direction(gradient, pairs):
 
 def minimise(function, x, longest, most=30, enough=1e-3):
     """The points of the descent from x and the values there. function: x → value, gradient. longest: of a step in any component of x, which
-    should all be of order 1. It ends where a step lowers the value by less than this share, or after so many steps."""
+    should all be of order 1. It ends where a step lowers the value by less than this share, or after so many steps. A value of infinity says that
+    the function cannot be found there; at the first x it must be."""
     x = np.array(x, dtype=float)
     value, gradient = function(x)
+    if not (np.isfinite(value) and np.isfinite(gradient).all()):
+        raise ValueError(f"the value {value} or the gradient {gradient} is not finite at the start, {x}: begin elsewhere")
     points, values, pairs = [x], [value], []
     while len(values) <= most:
         way = direction(gradient, pairs[-MEMORY:])
+        if not way.any():
+            break
         way *= min(1, longest / abs(way).max())
         share = 1
         while share > SHORTEST:

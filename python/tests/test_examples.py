@@ -67,6 +67,27 @@ class Examples(unittest.TestCase):
         self.assertLess(np.linalg.norm(way[-1, :2] - throw.BOWL), 0.1)
         self.assertLess(np.linalg.norm(way[-1] - way[-6]), 0.05)  # in the last 0.1 s [m]
 
+    def test_a_descent_refuses_a_start_without_a_value_and_ends_where_there_is_no_slope(self):
+        import descent
+
+        for start in (np.inf, np.nan):
+            with self.assertRaisesRegex(ValueError, "not finite at the start"):
+                descent.minimise(lambda x, value=start: (value, np.zeros(2)), [1, 2], longest=0.1)
+        points, values = descent.minimise(lambda x: (x @ x, 2 * x), [0, 0], longest=0.1)
+        np.testing.assert_array_equal(points, [[0, 0]])
+        # What cannot be found within a way is stepped back from.
+        points, values = descent.minimise(lambda x: (x @ x, 2 * x) if x[0] > -0.5 else (np.inf, np.zeros(2)), [1, 2], longest=5)
+        np.testing.assert_allclose(points[-1], 0, atol=1e-3)
+
+    def test_a_gripper_takes_only_a_solver_that_gave_up_for_a_fall(self):
+        import grip_lightly
+
+        import tetlap
+
+        for code, refusal in ((65, tetlap.RunError), (grip_lightly.GAVE_UP, ValueError)):
+            with unittest.mock.patch("tetlap.gradient", side_effect=tetlap.RunError("refused", code, None)):
+                self.assertRaises(refusal, grip_lightly.grip, np.full(6, 0.6))
+
     def test_a_gripper_lifts_with_less_force_by_its_gradient(self):
         import grip_lightly
 

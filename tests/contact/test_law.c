@@ -215,6 +215,46 @@ START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
 END_TEST
 
 // A Taylor series of the energy along a motion, with force and stiffness: what is left is of third order.
+// −∂f/∂x of a scene that lies this far from the origin, along a direction. Owned by the caller (free).
+static double *turned_at(const ContactLaw *law, int kind, double far, int *count) {
+  static const double GRID = 0x1p-32; // positions are multiples of it here and there
+  Scene scene;
+  press_on(&scene, kind);
+  scene.rest = blocks_copy(&scene.blocks);
+  for (int i = 0; i < 3 * scene.blocks.vertex_count; i++) {
+    scene.blocks.x[i] = far + GRID * round(scene.blocks.x[i] / GRID);
+    scene.rest[i] = far + GRID * round(scene.rest[i] / GRID);
+  }
+  for (int c = 0; c < 3; c++) scene.shape.point[c] = far + GRID * round(scene.shape.point[c] / GRID);
+  scene.law = law;
+  start(&scene, "clip");
+  double *d = random_motion(&scene, 1, false);
+  Product product = product_of(d, scene.blocks.vertex_count);
+  ContactStiffnessSink sink = product_sink(&product);
+  ck_assert_ok(contact_system_turn(scene.system, evaluated_at(scene.system, 0, scene.blocks.x),
+                                   CONTACT_ALL_INTERFACES, &sink));
+  *count = 3 * scene.blocks.vertex_count;
+  free(d), destroy(&scene);
+  return product.y;
+}
+
+// Differences of forces are divided by how far coordinates went, which is rounded to 1e-5 of a step so far
+// away. Of shapes that find their forces from differences of positions, so that rounding of those does not
+// show.
+START_TEST(the_matrix_of_a_law_is_the_same_far_from_the_origin) {
+  const int kinds[] = {ON_BALL, ON_PRISM};
+  Expression formula;
+  ContactLaw law = law_of(SQUARE, &formula);
+  int n;
+  double *near = turned_at(&law, kinds[_i], 0, &n), *far = turned_at(&law, kinds[_i], 0x1p20, &n);
+  double sum = 0, whole = product_dot(near, near, n);
+  for (int i = 0; i < n; i++) sum += (far[i] - near[i]) * (far[i] - near[i]);
+  ck_assert_double_gt(whole, 0);
+  ck_assert_double_le(sqrt(sum / whole), 1e-7);
+  free(near), free(far);
+}
+END_TEST
+
 START_TEST(energy_force_and_stiffness_are_a_taylor_series) {
   int kind = _i ? ON_PLANE : ON_BODY;
   Expression formula;
@@ -343,6 +383,7 @@ int main(void) {
   tcase_add_test(tests, laws_that_make_no_sense_are_refused);
   tcase_add_loop_test(tests, forces_are_minus_the_gradient_of_the_energy, 0, LAWS);
   tcase_add_loop_test(tests, stiffness_is_minus_the_derivative_of_the_forces, 0, LAWS);
+  tcase_add_loop_test(tests, the_matrix_of_a_law_is_the_same_far_from_the_origin, 0, 2);
   tcase_add_loop_test(tests, energy_force_and_stiffness_are_a_taylor_series, 0, 2);
   tcase_add_loop_test(tests, every_pair_balances, 0, LAWS);
   tcase_add_loop_test(tests, flat_surfaces_press_with_the_law_s_pressure, 0, LAWS);
