@@ -29,7 +29,7 @@ static const SceneKey line_keys[] = {
     {"to", SCENE_VECTOR, AT(FemLineDef, to), .unit = "m", .required = "[0, 0, 0.1]",
      .help = "the last; points outside go to the surface if that is within a fifth of an element's edge, "
              "others are left out"},
-    {"points", SCENE_INTEGER, AT(FemLineDef, points), .range = "[2, 1000]", .fallback = "51",
+    {"points", SCENE_INTEGER, AT(FemLineDef, points), .range = "[2, 10000]", .fallback = "51",
      .help = "evenly from one end to the other"},
     {0},
 };

@@ -25,17 +25,22 @@ static double longest_edge(const Vec3 x[4]) {
   return longest;
 }
 
-// How far a place is from the box about a tetrahedron, squared: no more than from the tetrahedron.
-static double box_distance2(const Vec3 x[4], Vec3 at) {
+static void box_of(const Vec3 x[4], double low[3], double high[3]) {
+  for (int c = 0; c < 3; c++) {
+    low[c] = INFINITY, high[c] = -INFINITY;
+    for (int k = 0; k < 4; k++) {
+      double value = c == 0 ? x[k].x : c == 1 ? x[k].y : x[k].z;
+      low[c] = fmin(low[c], value), high[c] = fmax(high[c], value);
+    }
+  }
+}
+
+// How far a place is from a box, squared: no more than from what is in it.
+static double box_distance2(const double low[3], const double high[3], Vec3 at) {
   const double p[3] = {at.x, at.y, at.z};
   double sum = 0;
   for (int c = 0; c < 3; c++) {
-    double low = INFINITY, high = -INFINITY;
-    for (int k = 0; k < 4; k++) {
-      double value = c == 0 ? x[k].x : c == 1 ? x[k].y : x[k].z;
-      low = fmin(low, value), high = fmax(high, value);
-    }
-    double off = fmax(0, fmax(low - p[c], p[c] - high));
+    double off = fmax(0, fmax(low[c] - p[c], p[c] - high[c]));
     sum += off * off;
   }
   return sum;
@@ -65,38 +70,92 @@ static double project(const Vec3 x[4], Vec3 at, double shares[4]) {
   return vec3_dot(off, off);
 }
 
-// The element that is nearest to a place; the first of several.
-static double locate(const FemMesh *mesh, Vec3 at, FemLinePoint *point) {
-  double nearest2 = INFINITY;
-  for (int t = 0; t < mesh->tet_count && nearest2 > 0; t++) {
-    Vec3 x[4];
-    double shares[4];
-    corners_of(mesh, t, x);
-    if (!(box_distance2(x, at) < nearest2)) continue;
-    double distance2 = project(x, at, shares);
-    if (!(distance2 < nearest2)) continue;
-    nearest2 = distance2;
-    point->tet = t;
-    memcpy(point->shares, shares, sizeof shares);
-  }
-  return sqrt(nearest2);
+// Where a point lies: between 0 and 1 along the line.
+static double share_of(const FemLineDef *def, int k) {
+  return (double)k / (def->points - 1);
 }
 
-static void find_points(FemLine *line, const FemMesh *mesh, const ContactSurface *surface, int tet_begin) {
-  const Vec3 from = vec3_at(line->def->from), way = vec3_sub(vec3_at(line->def->to), from);
-  for (int k = 0; k < line->def->points; k++) {
+static Vec3 point_of(const FemLineDef *def, int k) {
+  const Vec3 from = vec3_at(def->from), way = vec3_sub(vec3_at(def->to), from);
+  return vec3_add(from, vec3_scale(share_of(def, k), way));
+}
+
+// Which points of a line are within `margin` of a box in each direction, from *first to before *end; one more
+// at both ends for rounding.
+static void find_range(const FemLineDef *def, const double low[3], const double high[3], double margin,
+                       int *first, int *end) {
+  double least = 0, most = 1;
+  for (int c = 0; c < 3; c++) {
+    double way = def->to[c] - def->from[c], near = low[c] - margin - def->from[c],
+           far = high[c] + margin - def->from[c];
+    if (way == 0 && !(near <= 0 && far >= 0)) most = -INFINITY;
+    if (way == 0) continue;
+    least = fmax(least, fmin(near / way, far / way));
+    most = fmin(most, fmax(near / way, far / way));
+  }
+  *first = *end = 0;
+  if (!(least <= most)) return;
+  *first = (int)fmax(0, ceil(least * (def->points - 1)) - 1);
+  *end = (int)fmin(def->points, floor(most * (def->points - 1)) + 2);
+}
+
+// The element that is nearest to each point, the first of several, and the distance squared; INFINITY where
+// all are farther than `margin`. Elements one after another: of each the points are known that it may have.
+static void locate(const FemLineDef *def, const FemMesh *mesh, double margin, FemLinePoint *points,
+                   double *nearest2) {
+  for (int k = 0; k < def->points; k++) nearest2[k] = INFINITY;
+  for (int t = 0; t < mesh->tet_count; t++) {
+    Vec3 x[4];
+    double low[3], high[3], shares[4];
+    int first, end;
+    corners_of(mesh, t, x);
+    box_of(x, low, high);
+    find_range(def, low, high, margin, &first, &end);
+    for (int k = first; k < end; k++) {
+      const Vec3 at = point_of(def, k);
+      if (!(box_distance2(low, high, at) < nearest2[k])) continue;
+      double distance2 = project(x, at, shares);
+      if (!(distance2 < nearest2[k])) continue;
+      nearest2[k] = distance2;
+      points[k].tet = t;
+      memcpy(points[k].shares, shares, sizeof shares);
+    }
+  }
+}
+
+// Of all elements.
+static double longest_of_all(const FemMesh *mesh) {
+  double longest = 0;
+  for (int t = 0; t < mesh->tet_count; t++) {
+    Vec3 x[4];
+    corners_of(mesh, t, x);
+    longest = fmax(longest, longest_edge(x));
+  }
+  return longest;
+}
+
+static Status find_points(FemLine *line, const FemMesh *mesh, const ContactSurface *surface, int tet_begin) {
+  const FemLineDef *def = line->def;
+  const double length = vec3_length(vec3_sub(vec3_at(def->to), vec3_at(def->from)));
+  double *nearest2 = memory_zeroed((size_t)def->points, sizeof *nearest2);
+  if (!nearest2) return status_no_memory("a line");
+  const double margin = SAGITTA * (1 + ROUNDING) * longest_of_all(mesh);
+  locate(def, mesh, margin, line->points, nearest2);
+  for (int k = 0; k < def->points; k++) {
     Vec3 x[4];
     FemLinePoint *point = &line->points[line->count];
-    double share = (double)k / (line->def->points - 1);
-    double off = locate(mesh, vec3_add(from, vec3_scale(share, way)), point);
+    if (!isfinite(nearest2[k])) continue;
+    *point = line->points[k];
     corners_of(mesh, point->tet, x);
     double edge = longest_edge(x);
-    if (!(off <= SAGITTA * edge)) continue;
-    point->way = share * vec3_length(way);
+    if (!(sqrt(nearest2[k]) <= SAGITTA * edge)) continue;
+    point->way = share_of(def, k) * length;
     point->is_surface = contact_surface_distance(surface, place_of(x, point->shares)) <= ROUNDING * edge;
     point->tet += tet_begin;
     line->count++;
   }
+  memory_free(nearest2);
+  return STATUS_OK;
 }
 
 static Status fail_outside(const FemLineDef *def, const FemMesh *mesh) {
@@ -122,7 +181,7 @@ Status fem_line_create(FemLine *line, const FemLineDef *def, const FemMesh *mesh
   Status status = line->points ? STATUS_OK : status_no_memory("a line");
   if (!status) status = contact_surface_find(&surface, (const int(*)[4])mesh->tets, 0, mesh->tet_count);
   if (!status) status = contact_surface_index(&surface, mesh->rest);
-  if (!status) find_points(line, mesh, &surface, tet_begin);
+  if (!status) status = find_points(line, mesh, &surface, tet_begin);
   contact_surface_destroy(&surface);
   if (!status && line->count == 0) status = fail_outside(def, mesh);
   if (status) fem_line_destroy(line);

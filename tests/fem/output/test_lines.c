@@ -91,6 +91,35 @@ START_TEST(points_near_the_surface_are_on_it_and_others_left_out) {
 }
 END_TEST
 
+// Through the block from corner to corner and as far again at both ends, at 10,000 places: shares between 0
+// and 1 make up each place within.
+START_TEST(elements_carry_each_point_of_a_slanting_line) {
+  SceneRun run;
+  const double from[3] = {-0.1, -0.1, 0}, way[3] = {0.3, 0.3, 0.15}, whole = sqrt(0.2025);
+  scene_open(&run, "patch",
+             (const char *const[]){"bodies.upper.lines=[{name: slant, from: [-0.1, -0.1, 0], to: [0.2, 0.2, "
+                                   "0.15], points: 10000}]",
+                                   NULL});
+  const FemLine *line = &run.model.lines[0];
+  int within = 0;
+  for (int k = 0; k < line->count; k++) {
+    const FemLinePoint *point = &line->points[k];
+    const double share = point->way / whole;
+    if (share < 1 / 3.0 - 1e-9 || share > 2 / 3.0 + 1e-9) continue;
+    for (int c = 0; c < 3; c++) {
+      double place = 0;
+      for (int v = 0; v < 4; v++)
+        place += point->shares[v] * run.model.rest[3 * run.model.tets[point->tet][v] + c];
+      ck_assert_near(place, from[c] + share * way[c], 1e-12);
+    }
+    for (int v = 0; v < 4; v++) ck_assert(point->shares[v] > -1e-9 && point->shares[v] < 1 + 1e-9);
+    within++;
+  }
+  ck_assert_int_eq(within, 3334); // 3333 to 6666
+  scene_close(&run);
+}
+END_TEST
+
 START_TEST(lines_that_cannot_be_are_refused_with_their_place) {
   static const struct {
     const char *lines, *message;
@@ -135,6 +164,7 @@ int main(void) {
   tcase_add_checked_fixture(cases, folder_make, folder_remove);
   tcase_add_test(cases, a_pressed_block_shows_its_stress_strain_and_pressure_along_lines);
   tcase_add_test(cases, points_near_the_surface_are_on_it_and_others_left_out);
+  tcase_add_test(cases, elements_carry_each_point_of_a_slanting_line);
   tcase_add_test(cases, lines_that_cannot_be_are_refused_with_their_place);
   tcase_add_test(cases, a_run_takes_away_the_lines_of_an_earlier_one);
   return suite_run("lines", cases, 60);
