@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "overlap/exact/exact.h"
-#include "overlap/invariant.h"
+#include "overlap/pair/invariant.h"
 
 void datagen_hard_permute(const double tet[12], int k, double permuted[12]) {
   int left[4] = {0, 1, 2, 3};

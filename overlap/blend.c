@@ -92,7 +92,7 @@ static void go_on(const Ends ends[3], const Arms *arms, double changes[SIZE][3],
 
 void overlap_blend_derive(const double pair[24], double volume, const double gradient[24],
                           const double hessian[576], double slopes[72]) {
-  enum { PASSES = 2 }; // as overlap/centroid.c
+  enum { PASSES = 2 }; // as overlap/pair/centroid.c
   Ends ends[3];
   Point point;
   double changes[SIZE][3];

@@ -13,7 +13,7 @@ typedef struct OverlapBlend {
   double slopes[3 * 24];
 } OverlapBlend;
 
-// ∂x̄/∂x of a centroid that follows from V and ∇V (overlap/centroid.h), by ∇²V.
+// ∂x̄/∂x of a centroid that follows from V and ∇V (overlap/pair/centroid.h), by ∇²V.
 void overlap_blend_derive(const double pair[24], double volume, const double gradient[24],
                           const double hessian[576], double slopes[72]);
 // Of clipping.

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "base/memory.h"
-#include "overlap/centroid.h"
+#include "overlap/pair/centroid.h"
 #include "overlap/portions.h"
 #include "overlap/separation.h"
 

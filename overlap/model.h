@@ -17,7 +17,7 @@ bool overlap_model_has_ghosts(const OverlapModel *model);
 // Whether it has second derivatives.
 bool overlap_model_has_hessian(const OverlapModel *model);
 
-// Whether it has a centroid of its own; that of others follows from V and ∇V (overlap/centroid.h).
+// Whether it has a centroid of its own; that of others follows from V and ∇V (overlap/pair/centroid.h).
 bool overlap_model_has_own_centroid(const OverlapModel *model);
 
 // Whether it has first derivatives.

@@ -14,9 +14,9 @@
 #include "overlap/tpn/model.h"
 #include "overlap/weights.h"
 #include "overlap/wrap/cut.h"
-#include "overlap/wrap/doubt.h"
-#include "overlap/wrap/fade.h"
 #include "overlap/wrap/kinds.h"
+#include "overlap/wrap/mixture/doubt.h"
+#include "overlap/wrap/mixture/fade.h"
 
 // In those programs that link it; the library that others embed (overlap/api) does not.
 extern const OverlapOps overlap_cgal_ops __attribute__((weak));

@@ -10,7 +10,8 @@
 // integral of the other's outward normal over its part of the boundary: contact normal times area.
 //
 // V x̄ is the integral of x over the intersection; of a model that has no x̄ of its own it follows from V and
-// ∇V (overlap/centroid.h). Where V is 0, x̄ is written as (0, 0, 0): a number that any weight V makes vanish.
+// ∇V (overlap/pair/centroid.h). Where V is 0, x̄ is written as (0, 0, 0): a number that any weight V makes
+// vanish.
 #ifndef TETLAP_OVERLAP_OPS_H
 #define TETLAP_OVERLAP_OPS_H
 

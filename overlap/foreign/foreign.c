@@ -10,7 +10,7 @@
 #include "overlap/foreign/library.h"
 #include "overlap/foreign/process.h"
 #include "overlap/foreign/request.h"
-#include "overlap/sizes.h"
+#include "overlap/pair/sizes.h"
 #include "overlap/source.h"
 
 typedef struct Foreign {

@@ -5,8 +5,8 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "overlap/invariant.h"
 #include "overlap/ops.h"
+#include "overlap/pair/invariant.h"
 #include "overlap/tpn/simplex.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE, HALF = SIZE / 2, FACTORS = 3 };

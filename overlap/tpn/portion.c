@@ -7,7 +7,7 @@
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
 #include "overlap/geo/coplanar.h"
-#include "overlap/invariant.h"
+#include "overlap/pair/invariant.h"
 #include "overlap/separation.h"
 #include "overlap/tpn/share.h"
 #include "overlap/tpn/simplex.h"

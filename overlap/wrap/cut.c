@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "overlap/clip/clip.h"
+#include "overlap/pair/sizes.h"
 #include "overlap/separation.h"
-#include "overlap/sizes.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE, SQUARE = SIZE * SIZE };
 

@@ -7,10 +7,10 @@
 
 #include "base/text.h"
 #include "overlap/wrap/both.h"
-#include "overlap/wrap/coplanar.h"
 #include "overlap/wrap/cut.h"
-#include "overlap/wrap/doubt.h"
-#include "overlap/wrap/fade.h"
+#include "overlap/wrap/mixture/coplanar.h"
+#include "overlap/wrap/mixture/doubt.h"
+#include "overlap/wrap/mixture/fade.h"
 #include "overlap/wrap/placed.h"
 
 static const OverlapWrapKind *const kinds[] = {

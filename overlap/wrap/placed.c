@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "overlap/blend.h"
-#include "overlap/centroid.h"
 #include "overlap/clip/clip.h"
+#include "overlap/pair/centroid.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE, ROWS = 3 * SIZE };
 

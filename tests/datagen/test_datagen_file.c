@@ -19,7 +19,7 @@
 #include "datagen/generate.h"
 #include "datagen/hard.h"
 #include "datagen/run.h"
-#include "overlap/invariant.h"
+#include "overlap/pair/invariant.h"
 
 enum { COUNT = 9000, BLOCK = 1024 }; // more than two chunks
 

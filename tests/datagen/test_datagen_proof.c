@@ -8,7 +8,7 @@
 #include "datagen/draw/proof.h"
 #include "datagen/hard.h"
 #include "overlap/exact/exact.h"
-#include "overlap/invariant.h"
+#include "overlap/pair/invariant.h"
 #include "overlap/separation.h"
 
 // Against the unit simplex 0, e₁, e₂, e₃.

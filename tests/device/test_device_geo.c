@@ -11,8 +11,8 @@
 #include "base/memory.h"
 #include "datagen/hard.h"
 #include "overlap/geo/model.h"
-#include "overlap/invariant.h"
 #include "overlap/models.h"
+#include "overlap/pair/invariant.h"
 
 enum { COUNT = 2051, MEMBERS = 64, MODELS = 2, QUANTITIES = 3 };
 

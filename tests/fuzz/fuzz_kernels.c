@@ -5,7 +5,8 @@
 //   clip, tpn, tpn-published, tpn-bf16   to the bit
 //   clip32                               to the bit: doubtful pairs those of clip
 //   geo-small, geo                       flags but who answered to the bit, V to 1e-12 of the smaller
-//                                        tetrahedron's and some last digits of coordinates; ∇V and x̄ by their size
+//                                        tetrahedron's and some last digits of coordinates; ∇V and x̄ by their
+//                                        size
 //
 // and a pair gets the same bits in whichever place of a batch. Numbers that are not finite must be refused.
 #include <float.h>
@@ -16,8 +17,8 @@
 #include "net/kernel/bf16.h"
 #include "overlap/clip/lanes.h"
 #include "overlap/geo/model.h"
-#include "overlap/invariant.h"
 #include "overlap/models.h"
+#include "overlap/pair/invariant.h"
 #include "overlap/tpn/portion.h"
 #include "pairs.h"
 #include "target.h"

@@ -19,8 +19,8 @@
 #include "base/vec3.h"
 #include "datagen/hard.h"
 #include "overlap/geo/gate.h"
-#include "overlap/invariant.h"
 #include "overlap/models.h"
+#include "overlap/pair/invariant.h"
 #include "pairs.h"
 #include "target.h"
 

@@ -10,8 +10,8 @@
 
 #include "datagen/hard.h"
 #include "overlap/exact/exact.h"
-#include "overlap/invariant.h"
 #include "overlap/models.h"
+#include "overlap/pair/invariant.h"
 
 // How far V may be off, as shares of V and of the smaller volume, whichever is less strict; the moment V x̄
 // may be off by the extent times that.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The centroid that follows from V and ∇V (overlap/centroid.h). The oracles are cases that a hand can compute
-// and the centroids that clip and exact have of their own.
+// The centroid that follows from V and ∇V (overlap/pair/centroid.h). The oracles are cases that a hand can
+// compute and the centroids that clip and exact have of their own.
 #include "suite.h"
 
 #include <float.h>
@@ -9,10 +9,10 @@
 #include "base/random.h"
 #include "base/vec3.h"
 #include "datagen/hard.h"
-#include "overlap/centroid.h"
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
 #include "overlap/models.h"
+#include "overlap/pair/centroid.h"
 
 enum { PAIRS = 200 };
 

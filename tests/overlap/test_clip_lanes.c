@@ -12,7 +12,7 @@
 #include "overlap/clip/clip.h"
 #include "overlap/clip/lanes.h"
 #include "overlap/exact/exact.h"
-#include "overlap/invariant.h"
+#include "overlap/pair/invariant.h"
 
 enum { WIDEST = OVERLAP_CLIP_MAX_LANES, MEMBERS = 192 };
 

@@ -11,8 +11,8 @@
 #include "overlap/geo/centre.h"
 #include "overlap/geo/features/features.h"
 #include "overlap/geo/frame.h"
-#include "overlap/invariant.h"
 #include "overlap/model.h"
+#include "overlap/pair/invariant.h"
 
 static const double corner[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 static const int set_sizes[] = {36, 56, 70, 100, 120};

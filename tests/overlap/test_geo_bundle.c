@@ -9,7 +9,7 @@
 #include "overlap/geo/coplanar.h"
 #include "overlap/geo/frame.h"
 #include "overlap/geo/geo.h"
-#include "overlap/invariant.h"
+#include "overlap/pair/invariant.h"
 
 enum { COUNT = OVERLAP_GEO_BUNDLE - 3 };
 

@@ -9,12 +9,12 @@
 
 #include "datagen/hard.h"
 #include "net/files/weights.h"
-#include "overlap/centroid.h"
 #include "overlap/exact/exact.h"
 #include "overlap/geo/model.h"
 #include "overlap/geo/network.h"
-#include "overlap/invariant.h"
 #include "overlap/models.h"
+#include "overlap/pair/centroid.h"
+#include "overlap/pair/invariant.h"
 
 static const int set_sizes[] = {36, 56, 70, 100, 120};
 

@@ -9,7 +9,7 @@
 #include "datagen/hard.h"
 #include "overlap/exact/exact.h"
 #include "overlap/geo/frame.h"
-#include "overlap/invariant.h"
+#include "overlap/pair/invariant.h"
 
 START_TEST(the_gate_agrees_with_exact_in_every_class) {
   int inside = 0, empty = 0;

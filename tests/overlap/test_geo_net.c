@@ -13,7 +13,7 @@
 #include "net/model/model.h"
 #include "overlap/exact/exact.h"
 #include "overlap/geo/model.h"
-#include "overlap/invariant.h"
+#include "overlap/pair/invariant.h"
 
 static const char *weights_path(void) {
   static char path[64];

@@ -14,7 +14,7 @@
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
 #include "overlap/geo/model.h"
-#include "overlap/invariant.h"
+#include "overlap/pair/invariant.h"
 
 enum { MODEL_COUNT = 6 };
 

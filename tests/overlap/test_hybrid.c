@@ -13,8 +13,8 @@
 #include "base/random.h"
 #include "datagen/hard.h"
 #include "datagen/pairs.h"
-#include "overlap/invariant.h"
 #include "overlap/models.h"
+#include "overlap/pair/invariant.h"
 
 enum { SIZE = 24, MOST = 4096 };
 

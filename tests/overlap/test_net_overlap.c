@@ -2,8 +2,8 @@
 // TetrahedronPairNet as an overlap model, with random weights: what holds for any network.
 #include "random_network.h"
 
-#include "overlap/invariant.h"
 #include "overlap/models.h"
+#include "overlap/pair/invariant.h"
 #include "overlap/tpn/model.h"
 
 static double volume_of(const void *self, const double pair[24]) {

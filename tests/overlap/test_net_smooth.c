@@ -3,7 +3,7 @@
 // steadily, and are derivatives of one another, through gate, fading, range and blend.
 #include "random_network.h"
 
-#include "overlap/invariant.h"
+#include "overlap/pair/invariant.h"
 #include "overlap/tpn/model.h"
 
 // Along the whole path from apart to coincident, in steps that blends can be seen in, V and ∇V change no more

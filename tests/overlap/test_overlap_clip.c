@@ -9,7 +9,7 @@
 #include "datagen/hard.h"
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
-#include "overlap/invariant.h"
+#include "overlap/pair/invariant.h"
 
 static const double corner[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 

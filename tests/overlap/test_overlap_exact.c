@@ -13,8 +13,8 @@
 #include "overlap/exact/exact.h"
 #include "overlap/exact/fixed.h"
 #include "overlap/exact/integer.h"
-#include "overlap/invariant.h"
 #include "overlap/models.h"
+#include "overlap/pair/invariant.h"
 
 static const OverlapOps *const models[] = {&overlap_exact_ops, &overlap_cgal_ops};
 enum { MODEL_COUNT = 2 };

@@ -10,8 +10,8 @@
 
 #include "datagen/hard.h"
 #include "overlap/exact/exact.h"
-#include "overlap/invariant.h"
 #include "overlap/models.h"
+#include "overlap/pair/invariant.h"
 #include "overlap/separation.h"
 
 // What a model may lack. Networks that follow the paper see vertices in an order, know volumes roughly and

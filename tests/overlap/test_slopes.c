@@ -8,8 +8,8 @@
 
 #include "base/random.h"
 #include "folder.h"
-#include "overlap/invariant.h"
 #include "overlap/models.h"
+#include "overlap/pair/invariant.h"
 #include "overlap/separation.h"
 #include "overlap/slopes.h"
 

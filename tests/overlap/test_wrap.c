@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "overlap/invariant.h"
 #include "overlap/models.h"
+#include "overlap/pair/invariant.h"
 #include "overlap/separation.h"
 #include "overlap/slopes.h"
 

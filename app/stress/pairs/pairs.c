@@ -13,8 +13,8 @@
 #include "base/text.h"
 #include "datagen/hard.h"
 #include "overlap/exact/exact.h"
-#include "overlap/invariant.h"
 #include "overlap/models.h"
+#include "overlap/pair/invariant.h"
 #include "overlap/source.h"
 
 enum { MEMBERS = 100, MEMBERS_QUICK = 10, MEMBERS_SLOW = 3 };

@@ -7,7 +7,7 @@
 
 #include "datagen/draw/proof.h"
 #include "overlap/exact/exact.h"
-#include "overlap/invariant.h"
+#include "overlap/pair/invariant.h"
 
 enum { ANY = -1, EMPTY = -1, POINT, SEGMENT, AREA, BODY };
 

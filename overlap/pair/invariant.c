@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "overlap/invariant.h"
+#include "overlap/pair/invariant.h"
 
 #include <float.h>
 #include <math.h>

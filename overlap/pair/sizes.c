@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "overlap/sizes.h"
+#include "overlap/pair/sizes.h"
 
 #include <math.h>
 

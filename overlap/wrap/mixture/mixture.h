@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The wrappers that give a part of each pair to another answer: V = (1 − c) V_inner + c V_other, V x̄
 // likewise, with all derivatives that the inner model has. V_other is that of clipping, or 0.
-#ifndef TETLAP_OVERLAP_WRAP_MIXTURE_H
-#define TETLAP_OVERLAP_WRAP_MIXTURE_H
+#ifndef TETLAP_OVERLAP_WRAP_MIXTURE_MIXTURE_H
+#define TETLAP_OVERLAP_WRAP_MIXTURE_MIXTURE_H
 
 #include "overlap/wrap/wrap.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "overlap/wrap/doubt.h"
+#include "overlap/wrap/mixture/doubt.h"
 
 #include <math.h>
 
 #include "overlap/hybrid/share.h"
-#include "overlap/wrap/mixture.h"
+#include "overlap/wrap/mixture/mixture.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE };
 

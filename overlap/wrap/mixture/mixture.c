@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "overlap/wrap/mixture.h"
+#include "overlap/wrap/mixture/mixture.h"
 
 #include <string.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "overlap/wrap/fade.h"
+#include "overlap/wrap/mixture/fade.h"
 
 #include "overlap/geo/geo.h"
 #include "overlap/tpn/jet.h"
 #include "overlap/tpn/share.h"
-#include "overlap/wrap/mixture.h"
+#include "overlap/wrap/mixture/mixture.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE, SQUARE = SIZE * SIZE, PORTION = OVERLAP_WRAP_MIXTURE_PORTION };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "overlap/centroid.h"
+#include "overlap/pair/centroid.h"
 
 #include <math.h>
 

@@ -15,8 +15,8 @@
 // Nothing is divided by the size of a tetrahedron, and either orientation means the same. For the gradient of
 // a true volume the sum is the same for every o. For others it is not; o is then the middle of what is common
 // to the two bounding boxes, and after that the point found so, which lies nearer to the centroid.
-#ifndef TETLAP_OVERLAP_CENTROID_H
-#define TETLAP_OVERLAP_CENTROID_H
+#ifndef TETLAP_OVERLAP_PAIR_CENTROID_H
+#define TETLAP_OVERLAP_PAIR_CENTROID_H
 
 // x̄ [m] (3) of a pair (2, 4, 3) [m] with V [m³] and ∇V (2, 4, 3) [m²], within both bounding boxes (where
 // these are apart: halfway between them); (0, 0, 0) where V is 0. Finite whatever V and ∇V are.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "overlap/wrap/coplanar.h"
+#include "overlap/wrap/mixture/coplanar.h"
 
 #include <string.h>
 
 #include "overlap/geo/coplanar.h"
-#include "overlap/wrap/mixture.h"
+#include "overlap/wrap/mixture/mixture.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE };
 
