@@ -6,6 +6,7 @@
 What is computed is told in overlap/geo: frame.h (the frame of a pair, P and V₀), features.h, geo.h (centroid), coplanar.h (the share of `clip`).
 """
 import math
+from typing import NamedTuple
 
 import tetlap.torch
 import torch
@@ -117,21 +118,31 @@ def share_of_clip(P):
     return 1 - kept
 
 
+class Frame(NamedTuple):
+    features: torch.Tensor  # (n, count)
+    planes: torch.Tensor  # (n, 8, …)
+    Q: torch.Tensor  # (n, 8, 3)
+    volume: torch.Tensor  # V₀ (n)
+    slack: torch.Tensor  # at the centre (n, 8)
+    share: torch.Tensor  # of clip (n)
+
+
 class Geo(torch.nn.Module):
     def __init__(self, weights="geo"):
         super().__init__()
         self.network = tetlap.torch.network(tetlap.read_weights(weights)).double()
         onset = torch.zeros(1, 8, 8, dtype=torch.float64)
         onset[0, :4, :4] = torch.eye(4) - 0.25
+        self.onset = features_of(onset, self.count)[0]
         with torch.no_grad():
-            self.offset = math.log(1.28) - float(self.network(features_of(onset, self.count)[0])[0, 0])
+            self.offset = math.log(1.28) - float(self.network(self.onset)[0, 0])
 
     @property
     def count(self):
         return self.network.layer[0].in_features
 
-    def answer(self, pairs, slope, slack):
-        """V (n) and the centroid (n, 3) of pairs whose centres have these slacks."""
+    def describe(self, pairs, slope, slack):
+        """What no weight changes of pairs whose centres have these slacks: the Frame."""
         # The numbers are those of `slack`; what they change with is one step of Newton's from there, with the planes' heights there.
         middle = (slack[:, :4, None] * pairs[:, 0]).sum(1).detach()
         heights = torch.cat([coordinates(slope[:, 4 * t:4 * t + 4], pairs[:, t], middle[:, None])[:, 0] for t in (0, 1)], 1)
@@ -142,15 +153,18 @@ class Geo(torch.nn.Module):
         slack = slack + moved - moved.detach()
         Q, det = basis(slope / slack[..., None])
         P = Q @ Q.transpose(1, 2)
-        features, planes = features_of(P, self.count)
-        outputs = self.network(features)
-        volume = 100 / 6 / det * torch.exp(self.offset + outputs[:, 0])
-        alpha = (planes * outputs[:, None, 1:]).sum(2)
-        change = (Q * (Q * alpha[..., None]).sum(1, keepdim=True)).sum(2)
+        return Frame(*features_of(P, self.count), Q, 100 / 6 / det, slack, share_of_clip(P))
+
+    def answer(self, pairs, frame):
+        """V (n) and the centroid (n, 3)."""
+        outputs = self.network(frame.features)
+        volume = frame.volume * torch.exp(self.offset + outputs[:, 0])
+        alpha = (frame.planes * outputs[:, None, 1:]).sum(2)
+        change = (frame.Q * (frame.Q * alpha[..., None]).sum(1, keepdim=True)).sum(2)
         lowest = change.amin(1, keepdim=True)
         change = change * torch.where(lowest < -0.99, -0.99 / lowest, torch.ones_like(lowest))
-        centroid = ((slack * (1 + change))[:, :4, None] * pairs[:, 0]).sum(1)
-        return self.blend(pairs, share_of_clip(P), volume, centroid)
+        centroid = ((frame.slack * (1 + change))[:, :4, None] * pairs[:, 0]).sum(1)
+        return self.blend(pairs, frame.share, volume, centroid)
 
     def blend(self, pairs, share, volume, centroid):
         at = (share > 0).nonzero()[:, 0]
@@ -164,8 +178,8 @@ class Geo(torch.nn.Module):
         moved = centroid[at] + part[:, None] * (place - centroid[at])
         return volume.index_put((at,), blended), centroid.index_put((at,), moved)
 
-    def forward(self, pairs):
-        volume, centroid = pairs.new_zeros(len(pairs)), pairs.new_zeros(len(pairs), 3)
+    def framed(self, pairs):
+        """The pairs (m) with a common point that have a frame, it, and those (k) too flat for one."""
         (one, det), (two, det_two) = (slopes(pairs[:, t]) for t in (0, 1))
         slope = torch.cat((one, two), 1)
         with torch.no_grad():
@@ -175,9 +189,12 @@ class Geo(torch.nn.Module):
             slack = inside(across)
             at = (fits & (slack > LEAST_SLACK).all(1)).nonzero()[:, 0]
             slack, done = centre(slope[at], slack[at])
-            rest = torch.cat((at[~done], (~fits).nonzero()[:, 0]))
-            at, slack = at[done], slack[done]
-        found, place = self.answer(pairs[at], slope[at], slack)
+        return at[done], self.describe(pairs[at[done]], slope[at[done]], slack[done]), torch.cat((at[~done], (~fits).nonzero()[:, 0]))
+
+    def forward(self, pairs):
+        volume, centroid = pairs.new_zeros(len(pairs)), pairs.new_zeros(len(pairs), 3)
+        at, frame, rest = self.framed(pairs)
+        found, place = self.answer(pairs[at], frame)
         volume, centroid = volume.index_put((at,), found), centroid.index_put((at,), place)
         if len(rest):  # too flat
             exact = torch.from_numpy(tetlap.overlap(pairs[rest].detach().numpy(), "exact", 0, centroid=True).centroid)

@@ -105,6 +105,47 @@ class Examples(unittest.TestCase):
         np.testing.assert_allclose(seal.forces(points[-1]), seal.WANTED, rtol=0.02)
         np.testing.assert_allclose(points[-1], points[-1][::-1], atol=0.05)  # the strip is symmetric, its tetrahedra are not quite
 
+    def test_forces_on_vertices_are_sums_over_pairs(self):
+        import nodal_forces
+
+        import tetlap
+
+        scene = Path(os.environ["TETLAP_SOURCE_DIR"], "examples", "verdict", "press.yaml")
+        with tempfile.TemporaryDirectory() as folder:
+            told = list(nodal_forces.states(tetlap.run(scene, folder, overlap="clip", set={"output.frames": 2, "contact.stiffness": 2e7})))
+        self.assertEqual(len(told), 2)
+        for frame, state in told:
+            self.assertGreater(len(state.pairs), 100)
+            forces, found = frame["contact_force"], np.zeros_like(frame.points)
+            found[:state.vertex.max() + 1] = 2e7 * state.forces(state.moments)
+            self.assertGreater(abs(forces).max(), 0.1)
+            np.testing.assert_allclose(found, forces, atol=1e-12 * abs(forces).max())
+
+    def test_a_network_trained_in_place_has_smaller_errors_of_forces_in_the_program(self):
+        try:
+            import torch  # noqa: F401
+        except ImportError:
+            self.skipTest("no python3-torch")
+        import nodal_forces
+        import train_in_place
+
+        import tetlap
+
+        random = np.random.default_rng(3)
+        states = list(train_in_place.states(train_in_place.random_scene(random) for _ in range(5)))
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch("train_in_place.states", lambda scenes: states):
+            target = Path(folder, "new.safetensors")
+            told = train_in_place.main(target, epochs=10)
+            sums = np.zeros(2)
+            for state in states:
+                for n, model in enumerate(("geo-small", target)):
+                    found = tetlap.overlap(state.pairs, model, 0, centroid=True)
+                    places = [nodal_forces.barycentric(state.pairs[:, side], found.centroid) for side in (0, 1)]
+                    errors = found.volume[:, None] * np.concatenate(places, 1) - state.moments
+                    sums[n] += (state.forces(errors)**2).sum() / (state.forces(state.moments)**2).sum()
+        np.testing.assert_allclose(np.sqrt(sums / len(states)), [told[0][0], told[-1][0]], rtol=1e-2)
+        self.assertLess(told[-1][0], 0.9 * told[0][0])
+
     def test_the_gripper_lifts_the_cube_and_carries_its_weight(self):
         import grip
 
