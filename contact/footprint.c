@@ -10,9 +10,9 @@ size_t contact_footprint_layout(const ContactLayout *layout) {
   const ContactSelf *self = &layout->self;
   const ContactMesh *mesh = &layout->mesh;
   return HELD(layout->rest, layout->cell_volumes, mesh->cell_begin, mesh->own, mesh->tets, mesh->replaced,
-              mesh->outer, mesh->virtuals, mesh->depths, layout->tet_volumes, layout->vertex_volumes,
-              layout->interfaces, layout->nudges, layout->shifts, self->outer, self->cell_begin,
-              self->is_outer, self->left_out.pairs);
+              mesh->turns, mesh->outer, mesh->virtuals, mesh->depths, layout->tet_volumes,
+              layout->vertex_volumes, layout->interfaces, layout->nudges, layout->shifts, self->outer,
+              self->cell_begin, self->is_outer, self->left_out.pairs);
 }
 
 static size_t of_list(const ContactCandidateList *list) {

@@ -100,7 +100,7 @@ static void add_main(const ContactClipped *clipped, double squares[8][8], int fa
   Vec3 area = frame->normal[face % 4]; // inward for det > 0
   double length = vec3_length(area), sign = frame->det < 0 ? 1 : -1;
   Vec3 n = vec3_scale(sign / length, area), push = vec3_scale(-1, own->g);
-  if (is_outer(clipped->layout, clipped->pair, face)) push = vec3_scale(vec3_length(own->g), n);
+  if (is_outer(clipped->layout, clipped->pair, face)) push = vec3_scale(own->sign * vec3_length(own->g), n);
   const double p[3] = {n.x, n.y, n.z}, q[3] = {push.x, push.y, push.z};
   double block[3][24], scales[24];
   for (int r = 0; r < 3; r++)

@@ -15,6 +15,13 @@
 //   U_ij = c [ s_i V φ_B(x̄) + s_j V φ_A(x̄) ],
 //   F_ij = −c V (s_i g_B − s_j g_A)   on A at x̄, its opposite on B,   by λ onto the vertices.
 //
+// Where a body is folded, cells that are turned inside out (det F < 0) cover what others cover as well. Their
+// φ and g count with σ = −1, and ψ of a law is odd: then the sum over all cells at a point has no jump where
+// the number of them changes, and is the depth wherever the body covers it once more than it covers it inside
+// out. So U is a continuous function of the positions, whose gradient the forces are, through every
+// inversion. Not so in a tetrahedron with φ = 0 all round, of a sheet of one layer: that pushes outwards
+// either way.
+//
 // Force and torque of every pair balance by construction, whoever gave V and x̄. The sum over pairs is exactly
 // −∂U/∂x; one pair's force is not the gradient of its own U_ij: what its faces within the bodies sweep
 // cancels between neighbours and is left out. V and x̄ are continuous where faces of the two coincide, so the
@@ -27,9 +34,9 @@
 //   turning  − c s_i m_a ∇λ_b ⊗ g_B at (a, b), its transpose at (b, a);
 //            + c s_i (m_c g_B ⊗ ∇λ_b + m_b ∇λ_c ⊗ g_B) at (b, c)
 //
-// On outer faces g_B = −|g_B| n_f and the main term is positive semidefinite; on others it is, summed with
-// the neighbour's, the jump of g across the face. Turning is of the relative size depth/h. There is no 1/sin
-// θ.
+// On outer faces g_B = −σ |g_B| n_f and the main term is positive semidefinite, but where σ = −1; on others
+// it is, summed with the neighbour's, the jump of g across the face. Turning is of the relative size depth/h.
+// There is no 1/sin θ.
 #ifndef TETLAP_CONTACT_PRESSURE_FIELD_H
 #define TETLAP_CONTACT_PRESSURE_FIELD_H
 

@@ -88,7 +88,7 @@ static int find_points(const Moments *moments, const double lanes[8], double dep
   double sigma = sqrt(fmax(moments->square, 0));
   points[0] = (Point){.share = 1, .depth = depth};
   memcpy(points[0].lanes, lanes, sizeof points[0].lanes);
-  if (!(sigma > DBL_EPSILON * depth)) return 1;
+  if (!(sigma > DBL_EPSILON * fabs(depth))) return 1;
   double skew = moments->cube / (sigma * sigma * sigma), root = sqrt(4 + skew * skew);
   for (int k = 0; k < 2; k++) {
     double sign = k == 0 ? 1 : -1, reach = 0.5 * (skew + sign * root);
@@ -201,6 +201,7 @@ static double span_of(const ContactClipped *clipped, const ContactSide *side, in
 // surface, as that of d^1.5, and a table's jumps.
 static double mean_curve(const ContactLaw *law, double depth, double span) {
   double half = TET[0][1] * span;
+  if (depth < 0) return -mean_curve(law, -depth, span);
   if (!(span * span > DBL_EPSILON * depth * depth)) return contact_law_at(law, depth).curve;
   double low = fmax(depth - half, 0), high = depth + half;
   return (contact_law_at(law, high).slope - contact_law_at(law, low).slope) / (high - low);

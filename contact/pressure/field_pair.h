@@ -16,8 +16,8 @@ typedef struct ContactFieldPair {
   double weighed[2];    // s_i V, s_j V: how much of A's and B's material at rest is in P; of a shape 0 [m³]
   double centroid[3];   // x̄ [m]
   double force[3];      // F_ij on side 0 [N]; N = |F_ij|
-  double depths[2];     // φ_A(x̄), φ_B(x̄): of this point below the surface of side 0, 1 [m]
-  double slopes[2][3];  // g_A, g_B
+  double depths[2];     // σ φ_A(x̄), σ φ_B(x̄): of this point below the surface of side 0, 1 [m]
+  double slopes[2][3];  // σ g_A, σ g_B
   double weights[2][4]; // λ(x̄) of the vertices of the sides' tetrahedra (contact_layout_vertices)
 } ContactFieldPair;
 

@@ -125,7 +125,10 @@ static ContactLawValue table_at(const ContactLaw *law, double depth) {
 }
 
 ContactLawValue contact_law_at(const ContactLaw *law, double depth) {
-  depth = fmax(depth, 0);
+  if (depth < 0) {
+    ContactLawValue mirrored = contact_law_at(law, -depth);
+    return (ContactLawValue){-mirrored.pressure, mirrored.slope, -mirrored.curve};
+  }
   switch (law->kind) {
   case CONTACT_LAW_POWER:
     return power_at(law, depth);

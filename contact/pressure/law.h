@@ -50,7 +50,7 @@ typedef struct ContactLawValue {
   double curve;    // p″ [Pa/m²]
 } ContactLawValue;
 
-// Of a law that is not linear. A depth below 0 is taken as 0. Not finite where a formula is not.
+// Of a law that is not linear. Below 0 it is odd, p(−d) = −p(d). Not finite where a formula is not.
 ContactLawValue contact_law_at(const ContactLaw *law, double depth);
 
 // "p = 1e+06 Pa (d/1e-05 m)^2".

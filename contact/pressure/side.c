@@ -14,9 +14,10 @@ ContactSide contact_side_of(const ContactLayout *layout, int cell, const double 
   side.slope[2] = vec3_scale(inverse, vec3_cross(c, a));
   side.slope[3] = vec3_scale(inverse, vec3_cross(a, b));
   side.slope[0] = vec3_scale(-1, vec3_add(side.slope[1], vec3_add(side.slope[2], side.slope[3])));
+  side.sign = layout->mesh.turns[cell] * det < 0 ? -1 : 1;
   side.g = (Vec3){0, 0, 0};
   for (int v = 0; v < 4; v++) {
-    side.depths[v] = layout->mesh.depths[layout->mesh.cells[cell][v]];
+    side.depths[v] = side.sign * layout->mesh.depths[layout->mesh.cells[cell][v]];
     side.g = vec3_add(side.g, vec3_scale(side.depths[v], side.slope[v]));
   }
   side.s = 6 * layout->cell_volumes[cell] * fabs(inverse);

@@ -9,8 +9,9 @@
 typedef struct ContactSide {
   Vec3 x[4];        // vertices [m]
   Vec3 slope[4];    // ∇λ [1/m]
-  Vec3 g;           // ∇φ
-  double depths[4]; // φ of the vertices [m]
+  double sign;      // −1: the cell is turned inside out, and σ of contact/pressure/field.h is; else 1
+  Vec3 g;           // σ ∇φ
+  double depths[4]; // σ φ of the vertices [m]
   double s;         // rest volume over the present one
 } ContactSide;
 
@@ -19,7 +20,7 @@ ContactSide contact_side_of(const ContactLayout *layout, int cell, const double 
 // Barycentric coordinates in the cell.
 void contact_side_locate(const ContactSide *side, Vec3 x, double lambda[4]);
 
-// φ where these are the barycentric coordinates [m].
+// σ φ where these are the barycentric coordinates [m].
 static inline double contact_side_depth(const ContactSide *side, const double lambda[4]) {
   double depth = 0;
   for (int v = 0; v < 4; v++) depth += lambda[v] * side->depths[v];

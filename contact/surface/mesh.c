@@ -123,10 +123,24 @@ static Status reserve(ContactMesh *mesh, const ContactSystemDef *def, int split_
   mesh->own = memory_zeroed(cells, sizeof *mesh->own);
   mesh->tets = memory_zeroed(cells, sizeof *mesh->tets);
   mesh->replaced = memory_zeroed(cells, 1);
+  mesh->turns = memory_zeroed(cells, 1);
   mesh->outer = memory_zeroed(cells, 1);
   mesh->virtuals = memory_zeroed((size_t)split_count, sizeof *mesh->virtuals);
-  bool fits = mesh->depths && mesh->own && mesh->tets && mesh->replaced && mesh->outer && mesh->virtuals;
+  bool fits = mesh->depths && mesh->own && mesh->tets && mesh->replaced && mesh->turns && mesh->outer &&
+              mesh->virtuals;
   return fits ? STATUS_OK : status_no_memory("the contact mesh");
+}
+
+static signed char turn_of(const Work *work, int tet) {
+  const int *vertices = work->def->tets[tet];
+  double deepest = 0;
+  Vec3 x[4];
+  for (int v = 0; v < 4; v++) {
+    deepest = fmax(deepest, work->mesh->depths[vertices[v]]);
+    x[v] = rest_of(work->def, vertices[v]);
+  }
+  if (!(deepest > 0)) return 0;
+  return vec3_det4(x[0], x[1], x[2], x[3]) < 0 ? -1 : 1;
 }
 
 static void add_cell(Work *work, int tet, int replaced, int virtual) {
@@ -135,6 +149,7 @@ static void add_cell(Work *work, int tet, int replaced, int virtual) {
   for (int v = 0; v < 4; v++) mesh->own[cell][v] = v == replaced ? virtual : work->def->tets[tet][v];
   mesh->tets[cell] = tet;
   mesh->replaced[cell] = (signed char)replaced;
+  mesh->turns[cell] = turn_of(work, tet);
   mesh->outer[cell] = replaced < 0 ? work->outer[tet] : work->outer[tet] & (unsigned char)(1 << replaced);
 }
 
@@ -217,6 +232,7 @@ void contact_mesh_destroy(ContactMesh *mesh) {
   memory_free(mesh->own);
   memory_free(mesh->tets);
   memory_free(mesh->replaced);
+  memory_free(mesh->turns);
   memory_free(mesh->outer);
   memory_free(mesh->virtuals);
   memory_free(mesh->depths);

@@ -23,10 +23,44 @@ START_TEST(forces_are_minus_the_gradient_of_the_energy) {
 }
 END_TEST
 
+// Vertices of the upper block are pushed through what lies above them, so that elements are inverted there.
+static int fold(Scene *scene) {
+  const ContactLayout *layout = contact_system_layout(scene->system);
+  const ContactBody *upper = &scene->blocks.bodies[scene->blocks.body_count - 1];
+  int folded = 0;
+  for (int v = upper->vertex_begin; v < upper->vertex_end; v++)
+    if (layout->mesh.depths[v] > 0) scene->blocks.x[3 * v + 2] -= 1.1, scene->blocks.x[3 * v] += 0.2;
+  move(scene);
+  const ContactEvaluation *evaluation = evaluated_at(scene->system, 0, scene->blocks.x);
+  for (int k = 0; k < evaluation->pair_count; k++)
+    folded += evaluation->fields[k].depths[0] < 0 || evaluation->fields[k].depths[1] < 0;
+  return folded;
+}
+
+START_TEST(forces_are_minus_the_gradient_where_a_body_is_folded) {
+  Scene scene;
+  press_on(&scene, ON_BODY);
+  start(&scene, "clip");
+  ck_assert_int_gt(fold(&scene), 10);
+  int n = 3 * scene.blocks.vertex_count;
+  double *x = blocks_copy(&scene.blocks), *force = forces_at(&scene, scene.blocks.x);
+  double size = sqrt(product_dot(force, force, n));
+  ck_assert(size > 0);
+  for (uint64_t k = 0; k < 10; k++) {
+    double *d = random_motion(&scene, k, true), length = sqrt(product_dot(d, d, n));
+    ck_assert_near(slope_along(&scene, d, 1e-5, x), -product_dot(force, d, n), 1e-8 * size * length);
+    free(d);
+  }
+  free(x), free(force), destroy(&scene);
+}
+END_TEST
+
 START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
   Scene scene;
-  press_on(&scene, _i);
+  bool is_folded = _i == KINDS;
+  press_on(&scene, is_folded ? ON_BODY : _i);
   start(&scene, "clip");
+  if (is_folded) ck_assert_int_gt(fold(&scene), 10);
   int n = 3 * scene.blocks.vertex_count;
   double *x = blocks_copy(&scene.blocks), h = 1e-6;
   for (uint64_t k = 0; k < 5; k++) {
@@ -495,7 +529,8 @@ END_TEST
 int main(void) {
   TCase *tests = tcase_create("field");
   tcase_add_loop_test(tests, forces_are_minus_the_gradient_of_the_energy, 0, KINDS);
-  tcase_add_loop_test(tests, stiffness_is_minus_the_derivative_of_the_forces, 0, KINDS);
+  tcase_add_test(tests, forces_are_minus_the_gradient_where_a_body_is_folded);
+  tcase_add_loop_test(tests, stiffness_is_minus_the_derivative_of_the_forces, 0, KINDS + 1);
   tcase_add_loop_test(tests, every_pair_balances_with_every_model, 0, MODEL_COUNT);
   tcase_add_test(tests, a_model_without_its_own_centroid_presses_and_balances);
   tcase_add_test(tests, cells_fill_the_bodies_and_slope_by_one_on_every_outer_face);

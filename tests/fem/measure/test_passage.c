@@ -127,6 +127,18 @@ START_TEST(a_body_that_is_inverted_is_to_be_refined) {
 }
 END_TEST
 
+// A blow folds a plate of two layers: it gains no energy of that, though the edge passes in the end.
+START_TEST(a_folded_plate_gains_no_energy) {
+  SceneRun run;
+  scene_open(&run, "spike", (const char *const[]){"bodies.plate.mesh.box.cells=[16, 16, 2]", NULL});
+  scene_run_from(&run, NULL);
+  const FemTrouble *trouble = &run.result.trouble;
+  ck_assert_int_gt((int)trouble->of[FEM_TROUBLE_INVERTED].steps, 100);
+  ck_assert_int_eq((int)trouble->of[FEM_TROUBLE_ENERGY].steps, 0);
+  scene_close(&run);
+}
+END_TEST
+
 // From its first frame to its last.
 static double way_of(const SceneRun *run, int vertex, int axis) {
   return scene_position(run, run->result.trajectory.frame_count - 1, vertex)[axis] -
@@ -262,6 +274,7 @@ int main(void) {
   tcase_add_test(cases, an_edge_does_not_pass_a_soft_plate);
   tcase_add_test(cases, a_run_ends_before_the_step_that_passes_and_says_what_to_write);
   tcase_add_test(cases, a_body_that_is_inverted_is_to_be_refined);
+  tcase_add_test(cases, a_folded_plate_gains_no_energy);
   tcase_add_test(cases, what_slides_does_not_pass);
   tcase_add_test(cases, what_rolls_does_not_pass);
   tcase_add_test(cases, what_slides_over_a_ball_does_not_pass_in_any_unit);
