@@ -52,6 +52,11 @@ void text_guess_offer(TextGuess *guess, const char *candidate) {
   if (is_near) guess->distance = distance;
 }
 
+bool text_ends_in(const char *text, const char *ending) {
+  size_t length = strlen(text), size = strlen(ending);
+  return length > size && strcmp(text + length - size, ending) == 0;
+}
+
 const char *text_next(const char *list, char word[TEXT_MAX_WORD]) {
   if (!list || !list[0]) return NULL;
   size_t length = strcspn(list, " ,");

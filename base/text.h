@@ -25,6 +25,9 @@ typedef struct TextGuess {
 TextGuess text_guess_of(const char *word);
 void text_guess_offer(TextGuess *guess, const char *candidate);
 
+// Whether a text has this ending and something before it.
+bool text_ends_in(const char *text, const char *ending);
+
 // Whether `word` is one of the words of `list`, separated by single spaces or
 // commas. NULL: an empty list.
 bool text_lists(const char *list, const char *word);

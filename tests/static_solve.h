@@ -11,11 +11,12 @@
 #include "fem/model/build.h"
 #include "fem/sparse/solver.h"
 #include "scene.h"
+#include "scene_text.h"
 
 // Reads and builds; `format` as printf's.
 static inline void scene_open_text(SceneRun *run, const char *text) {
   *run = (SceneRun){0};
-  ck_assert_ok(app_scene_read_text("test.yaml", text, strlen(text), &run->scene));
+  ck_assert_ok(scene_text_read("test.yaml", text, strlen(text), &run->scene));
   ck_assert_ok(fem_model_create(&run->model, &run->scene));
 }
 

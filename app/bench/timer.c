@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/bench/timer.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/log.h"
 #include "base/machine/clock.h"
+#include "base/sorted.h"
 
 void app_bench_timer_start(AppBenchTimer *timer) {
   timer->wall_began = clock_wall_s();
@@ -17,34 +17,27 @@ void app_bench_timer_stop(AppBenchTimer *timer, int round, double parts) {
   timer->cpu[round] = (clock_cpu_s() - timer->cpu_began) / parts;
 }
 
-static int compare(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static void sort(const double *times, int count, double sorted[APP_BENCH_MAX_REPEATS]) {
   memcpy(sorted, times, (size_t)count * sizeof *sorted);
-  qsort(sorted, (size_t)count, sizeof *sorted, compare);
-}
-
-static double median_of(const double *sorted, int count) {
-  return (sorted[(count - 1) / 2] + sorted[count / 2]) / 2;
+  sorted_values(sorted, (size_t)count);
 }
 
 AppBenchTime app_bench_timer_time(const AppBenchTimer *timer, int rounds) {
   double sorted[APP_BENCH_MAX_REPEATS];
   sort(timer->cpu, rounds, sorted);
-  double cpu = median_of(sorted, rounds);
+  double cpu = sorted_median(sorted, (size_t)rounds);
   sort(timer->wall, rounds, sorted);
-  return (AppBenchTime){
-      .wall = median_of(sorted, rounds), .wall_min = sorted[0], .wall_max = sorted[rounds - 1], .cpu = cpu};
+  return (AppBenchTime){.wall = sorted_median(sorted, (size_t)rounds),
+                        .wall_min = sorted[0],
+                        .wall_max = sorted[rounds - 1],
+                        .cpu = cpu};
 }
 
 static AppBenchRatio ratio_of(const double *times, const double *reference, int rounds) {
   double ratios[APP_BENCH_MAX_REPEATS], sorted[APP_BENCH_MAX_REPEATS];
   for (int r = 0; r < rounds; r++) ratios[r] = reference[r] / times[r];
   sort(ratios, rounds, sorted);
-  return (AppBenchRatio){median_of(sorted, rounds), sorted[0], sorted[rounds - 1]};
+  return (AppBenchRatio){sorted_median(sorted, (size_t)rounds), sorted[0], sorted[rounds - 1]};
 }
 
 AppBenchRatio app_bench_timer_ratio(const AppBenchTimer *timer, const AppBenchTimer *reference, int rounds) {

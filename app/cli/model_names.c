@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "overlap/models.h"
 #include "overlap/source.h"
 
@@ -110,11 +111,9 @@ static bool write_name(Entry *entry) {
 // Takes the ending off the path, which says no more than what the file is.
 static void cut_ending(char *path) {
   static const char *const endings[] = {".safetensors", ".so", ".py", ".onnx"};
-  size_t length = strlen(path);
   for (size_t e = 0; e < sizeof endings / sizeof *endings; e++) {
-    size_t ending = strlen(endings[e]);
-    if (length <= ending || strcmp(path + length - ending, endings[e]) != 0) continue;
-    path[length - ending] = 0;
+    if (!text_ends_in(path, endings[e])) continue;
+    path[strlen(path) - strlen(endings[e])] = 0;
     return;
   }
 }

@@ -2,12 +2,12 @@
 #include "app/compare/comparison.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "app/cli/format.h"
 #include "app/table/table.h"
 #include "base/memory.h"
+#include "base/sorted.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
 
@@ -64,11 +64,6 @@ Status app_audit_add(AppAudit *audit, double time, const ContactAudit *state) {
   return STATUS_OK;
 }
 
-static int compare_errors(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 Status app_audit_figure(const AppAudit *audit, AppAuditKind kind, AppAuditFigure *figure) {
   *figure = (AppAuditFigure){NAN, NAN, NAN, NAN};
   if (audit->count == 0) return STATUS_OK;
@@ -83,8 +78,8 @@ Status app_audit_figure(const AppAudit *audit, AppAuditKind kind, AppAuditFigure
     figure->worst = errors[i], figure->worst_time = audit->rows[i].time;
   }
   figure->error = contact_audit_error(sum);
-  qsort(errors, (size_t)audit->count, sizeof *errors, compare_errors);
-  figure->median = 0.5 * (errors[(audit->count - 1) / 2] + errors[audit->count / 2]);
+  sorted_values(errors, (size_t)audit->count);
+  figure->median = sorted_median(errors, (size_t)audit->count);
   memory_free(errors);
   return STATUS_OK;
 }

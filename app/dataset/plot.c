@@ -9,17 +9,13 @@
 #include "app/dataset/summary.h"
 #include "app/plot/gnuplot.h"
 #include "base/files/file.h"
+#include "base/text.h"
 
 enum { BINS_A_STEP = APP_DATASET_BINS_A_DECADE / 5 }; // five steps of the curves a decade
 
-static bool ends_with(const char *text, const char *end) {
-  size_t length = strlen(text), wanted = strlen(end);
-  return length >= wanted && strcmp(text + length - wanted, end) == 0;
-}
-
 static const char *terminal_of(const char *picture) {
-  if (ends_with(picture, ".svg")) return "svg size 1400,420 dynamic";
-  if (ends_with(picture, ".pdf")) return "pdfcairo size 14in,4.2in";
+  if (text_ends_in(picture, ".svg")) return "svg size 1400,420 dynamic";
+  if (text_ends_in(picture, ".pdf")) return "pdfcairo size 14in,4.2in";
   return "pngcairo size 1400,420";
 }
 

@@ -2,9 +2,9 @@
 #include "app/evaluation/bounds.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
+#include "base/sorted.h"
 
 // What clip, which has a part in pairs with nearly coplanar faces, may be off, over V.
 static const double CLIP_ERROR = 1e-9;
@@ -38,17 +38,12 @@ Status app_evaluation_bounds_add(AppEvaluationBoundsRun *run, const OverlapModel
   return status;
 }
 
-static int compare(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 AppEvaluationBounds app_evaluation_bounds_finish(AppEvaluationBoundsRun *run) {
   if (run->count == 0) return (AppEvaluationBounds){0, NAN, NAN, NAN, NAN, NAN};
   size_t kept = 0, half = run->count / 2, most = (size_t)(0.95 * (double)(run->count - 1) + 0.5);
   for (size_t i = 0; i < run->count; i++) kept += run->errors[i] <= run->widths[i] + CLIP_ERROR;
-  qsort(run->errors, run->count, sizeof(double), compare);
-  qsort(run->widths, run->count, sizeof(double), compare);
+  sorted_values(run->errors, run->count);
+  sorted_values(run->widths, run->count);
   return (AppEvaluationBounds){.count = run->count,
                                .coverage = (double)kept / (double)run->count,
                                .width_median = run->widths[half],

@@ -2,11 +2,11 @@
 #include "app/evaluation/evaluation.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "base/random.h"
+#include "base/sorted.h"
 #include "base/vec3.h"
 #include "datagen/generate.h"
 #include "overlap/ops.h"
@@ -309,15 +309,10 @@ Status app_evaluation_add(AppEvaluationRun *run, const DatagenPairs *pairs, size
   return STATUS_OK;
 }
 
-static int compare(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 // The value below which that share of them lies; sorts them.
 static double quantile(double *values, size_t count, double share) {
   if (count == 0) return NAN;
-  qsort(values, count, sizeof *values, compare);
+  sorted_values(values, count);
   return values[(size_t)(share * (double)(count - 1) + 0.5)];
 }
 

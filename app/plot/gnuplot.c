@@ -11,13 +11,9 @@
 #include <unistd.h>
 
 #include "base/files/file.h"
+#include "base/text.h"
 
 extern char **environ;
-
-static bool ends_with(const char *text, const char *end) {
-  size_t length = strlen(text), wanted = strlen(end);
-  return length >= wanted && strcmp(text + length - wanted, end) == 0;
-}
 
 void app_gnuplot_quote(FILE *script, const char *text) {
   fputc('"', script);
@@ -29,14 +25,14 @@ void app_gnuplot_quote(FILE *script, const char *text) {
 }
 
 Status app_gnuplot_open(FILE *script, const char *picture, int width, int height) {
-  if (ends_with(picture, ".svg"))
+  if (text_ends_in(picture, ".svg"))
     fprintf(script,
             "set terminal svg size %d,%d dynamic background 'white' font 'sans-serif,12'\nsmall = ',10'\n",
             width, height);
-  else if (ends_with(picture, ".pdf"))
+  else if (text_ends_in(picture, ".pdf"))
     fprintf(script, "set terminal pdfcairo size %.3fin,%.3fin font 'sans,9'\nsmall = ',7.5'\n", width / 96.0,
             height / 96.0);
-  else if (ends_with(picture, ".png"))
+  else if (text_ends_in(picture, ".png"))
     fprintf(script,
             "set terminal pngcairo size %d,%d font 'sans,18' linewidth 2 background 'white'\nsmall = ',14'\n",
             2 * width, 2 * height);
@@ -71,7 +67,7 @@ static bool is_whole(const char *path, const char *picture) {
   size_t length = is_long ? fread(tail, 1, sizeof tail, file) : 0;
   fclose(file);
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
-    if (ends_with(picture, kinds[k].ending)) return holds(tail, length, kinds[k].last);
+    if (text_ends_in(picture, kinds[k].ending)) return holds(tail, length, kinds[k].last);
   return false;
 }
 

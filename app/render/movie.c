@@ -13,16 +13,12 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "base/text.h"
 
 enum { NOT_FOUND = 127 };
 
-static bool ends_in(const char *path, const char *ending) {
-  size_t length = strlen(path), size = strlen(ending);
-  return length > size && strcmp(path + length - size, ending) == 0;
-}
-
 bool app_render_movie_is_known(const char *path) {
-  return ends_in(path, ".mp4") || ends_in(path, ".gif");
+  return text_ends_in(path, ".mp4") || text_ends_in(path, ".gif");
 }
 
 // `url`: "file:…", so that no name is taken for an option or a protocol.
@@ -46,7 +42,7 @@ static Status start(AppRenderMovie *movie, const char *path, const char *url, co
   signal(SIGPIPE, SIG_IGN); // ffmpeg that is gone shows as a failed write
   if (pipe2(ends, O_CLOEXEC) != 0) return status_fail(STATUS_IO, "no pipe can be made: %s", strerror(errno));
   movie->process = fork();
-  if (movie->process == 0) become(ends[0], url, rate, ends_in(path, ".gif"));
+  if (movie->process == 0) become(ends[0], url, rate, text_ends_in(path, ".gif"));
   int reason = errno;
   close(ends[0]);
   movie->stream = movie->process > 0 ? fdopen(ends[1], "w") : NULL;

@@ -14,12 +14,10 @@
 #include "base/files/temporary.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/text.h"
 
 bool app_render_is_picture(const char *path) {
-  static const char ending[] = ".png";
-  size_t length = strlen(path);
-  return strncmp(path, "/dev/", 5) == 0 ||
-         (length > strlen(ending) && strcmp(path + length - strlen(ending), ending) == 0);
+  return strncmp(path, "/dev/", 5) == 0 || text_ends_in(path, ".png");
 }
 
 static Status check_stop(const AppRenderOptions *options) {

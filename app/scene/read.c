@@ -295,10 +295,3 @@ Status app_scene_read_section(const char *path, const char *const *overrides, in
   app_scene_tree_destroy(root);
   return status;
 }
-
-Status app_scene_read_text(const char *path, const char *text, size_t size, FemSceneDef *scene) {
-  *scene = (FemSceneDef){0};
-  SceneNode *root;
-  TRY(app_scene_tree_parse(path, text, size, &root));
-  return app_scene_read_tree(path, root, NULL, 0, scene);
-}

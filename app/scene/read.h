@@ -13,12 +13,10 @@
 // was expected and found, and the nearest valid name; STATUS_USAGE: the same of an override; STATUS_IO.
 Status app_scene_read(const char *path, const char *const *overrides, int override_count, FemSceneDef *scene);
 
-// The same of a tree that a file was read into; it is taken over, also on failure.
+// The same of a tree that a file was read into; it is taken over, also on failure. Mesh paths count from the
+// directory of `path`.
 Status app_scene_read_tree(const char *path, SceneNode *root, const char *const *overrides,
                            int override_count, FemSceneDef *scene);
-
-// The same of a text in memory; mesh paths count from the directory of `path`.
-Status app_scene_read_text(const char *path, const char *text, size_t size, FemSceneDef *scene);
 
 // Reads a file by a table of its own: the struct that `section` describes, zeroed before, is filled with the
 // defaults and then with what the file and the overrides say. What it owns after a failure is the caller's.

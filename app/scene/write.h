@@ -7,9 +7,8 @@
 #include "base/files/record.h"
 #include "fem/scene/scene.h"
 
-// Puts the scene with all its defaults under `name` into `parent`. What it writes is a scene again
-// (app_scene_read_text) with the same definition; mesh paths stay as they were written, relative to
-// scene->path.
+// Puts the scene with all its defaults under `name` into `parent`. What it writes is a scene again, with the
+// same definition; mesh paths stay as they were written, relative to scene->path.
 Status app_scene_write_resolved(const FemSceneDef *scene, Record *parent, const char *name);
 
 // Writes the value of one key other than a section, as it stands in the struct that the key's section

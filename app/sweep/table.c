@@ -10,6 +10,7 @@
 #include "app/sweep/order.h"
 #include "base/files/file.h"
 #include "base/memory.h"
+#include "base/sorted.h"
 #include "base/text.h"
 
 // The numbers of a row: where they stand in summary.json, what they are called, and above their column of the
@@ -329,11 +330,6 @@ Status app_sweep_table_write(const AppSweepGrid *grid) {
   return status;
 }
 
-static int compare(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 // The median of a column over the runs of one combination of values, and how far they are apart over it.
 static double median_of(const AppSweepGrid *grid, int row, const struct Column *column, double *spread) {
   double values[APP_SWEEP_MAX_REPEATS];
@@ -344,8 +340,8 @@ static double median_of(const AppSweepGrid *grid, int row, const struct Column *
   }
   *spread = NAN;
   if (count == 0) return NAN;
-  qsort(values, (size_t)count, sizeof *values, compare);
-  double median = 0.5 * (values[(count - 1) / 2] + values[count / 2]);
+  sorted_values(values, (size_t)count);
+  double median = sorted_median(values, (size_t)count);
   if (count > 1) *spread = (values[count - 1] - values[0]) / median;
   return median;
 }

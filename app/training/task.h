@@ -49,7 +49,6 @@ struct AppTrainingTask {
   const AppTrainingTaskOps *ops;
   const AppTrainingConfig *config; // borrowed
   void *self;                      // owned by the operations
-  long long sample_count;          // training samples that there are
   char summary[512];               // of the data, for people and for the weights' file
 };
 

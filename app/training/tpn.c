@@ -261,7 +261,6 @@ static Status create(AppTrainingTask *task, const NetWhitening *whitening) {
   TRY(find_range(&tpn->training, task->config, &tpn->range));
   TRY(load_sets(tpn, task->config));
   TRY(app_training_order_create(&tpn->order, tpn->training.count));
-  task->sample_count = tpn->training.count;
   snprintf(task->summary, sizeof task->summary,
            tpn->training.left_out ? "%d pairs to train on; %d left out: too flat to be normalised"
                                   : "%d pairs to train on",

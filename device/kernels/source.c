@@ -149,16 +149,6 @@ const DeviceProgram device_program_geo = {
     .items = 64,
 };
 
-static const DeviceProgram *const programs[] = {
-    &device_program_clip, &device_program_clip32,   &device_program_gather, &device_program_poses,
-    &device_program_tpn,  &device_program_tpn_bf16, &device_program_scalar, &device_program_geo_small,
-    &device_program_geo,  &device_program_peak};
-
-const DeviceProgram *const *device_source_programs(int *count) {
-  *count = sizeof programs / sizeof *programs;
-  return programs;
-}
-
 Status device_source_text(const DeviceProgram *program, DeviceLanguage language, char **text) {
   const char *parts[DEVICE_MAX_PIECES + 2] = {language == DEVICE_OPENCL_C ? language_opencl : language_cuda,
                                               program->defines};

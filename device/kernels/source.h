@@ -33,9 +33,6 @@ extern const DeviceProgram device_program_clip, device_program_clip32, device_pr
     device_program_poses, device_program_tpn, device_program_tpn_bf16, device_program_scalar,
     device_program_geo_small, device_program_geo, device_program_peak;
 
-// All programs, an array of `*count`.
-const DeviceProgram *const *device_source_programs(int *count);
-
 // The whole text, the caller's (memory_free). STATUS_MEMORY.
 Status device_source_text(const DeviceProgram *program, DeviceLanguage language, char **text);
 

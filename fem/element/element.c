@@ -77,12 +77,6 @@ void fem_element_spread_tangent(const FemElement *element, const double dP[81], 
   complete_matrix(matrix);
 }
 
-double fem_element_energy(const FemElement *element, const FemMaterial *material, const double x[12]) {
-  double F[9];
-  fem_element_deformation(element, x, F);
-  return element->volume * fem_material_energy(material, F);
-}
-
 void fem_element_cauchy(const FemElement *element, const FemMaterial *material, const double x[12],
                         double stress[6]) {
   double F[9], P[9];

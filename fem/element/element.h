@@ -19,8 +19,6 @@ void fem_element_create(FemElement *element, const double rest[12]);
 // F = Σ_a x_a ⊗ ∂N_a/∂X; Ḟ from velocities in the same way.
 void fem_element_deformation(const FemElement *element, const double x[12], double F[9]);
 
-double fem_element_energy(const FemElement *element, const FemMaterial *material, const double x[12]); // [J]
-
 // K_ai,bk = V Σ_jl ∂N_a/∂X_j ∂P_ij/∂F_kl ∂N_b/∂X_l for any symmetric ∂P/∂F.
 void fem_element_spread_tangent(const FemElement *element, const double dP[81], double matrix[144]);
 

@@ -98,18 +98,6 @@ static double mean_pressure(const FemQuadratic *element, FemQuadraticLaw law, co
   return law.bulk * sum_volume_change(element, law.local->law, x) / element->volume;
 }
 
-double fem_quadratic_energy(const FemQuadratic *element, FemQuadraticLaw law, const double x[30]) {
-  double sum = 0, F[9];
-  for (int p = 0; p < POINTS; p++) {
-    FemPoint point = fem_quadratic_point(element, p);
-    fem_point_deformation(&point, x, F);
-    sum += point.weight * fem_material_energy(law.local, F);
-  }
-  if (law.bulk == 0) return sum;
-  double change = sum_volume_change(element, law.local->law, x);
-  return sum + 0.5 * law.bulk * change * change / element->volume;
-}
-
 // P at a point, its share of the mean pressure included.
 static void find_stress(FemQuadraticLaw law, double pressure, const double F[9], double P[9]) {
   fem_material_stress(law.local, F, P);

@@ -58,9 +58,6 @@ FemPoint fem_quadratic_point(const FemQuadratic *element, int point);
 // scaled to the element's mass (Hinton, Rock and Zienkiewicz 1976). Row sums would be negative at corners.
 double fem_quadratic_mass_share(int node);
 
-double fem_quadratic_energy(const FemQuadratic *element, FemQuadraticLaw law,
-                            const double x[30]); // [J]
-
 // Cauchy stress [Pa] (fem_material_cauchy) in a part of the element: at the point near a corner for the parts
 // 0 … 3 there (fem/mesh/mesh.h), the mean of the four points for the others.
 void fem_quadratic_cauchy(const FemQuadratic *element, FemQuadraticLaw law, const double x[30], int part,

@@ -27,14 +27,6 @@ static double bulk_of(FemLame lame) {
   return lame.lambda + 2.0 / 3 * lame.mu;
 }
 
-// μ/2 (g I_C − 3) + K/2 (J − 1)².
-double fem_material_isochoric_energy(const FemMaterial *material, const double F[9]) {
-  FemLame lame = fem_material_lame(material);
-  double swelling = fem_cofactor_swelling(F), stretch = stretch_of(F);
-  FemMaterialPower g = fem_material_isochoric_power(swelling);
-  return 0.5 * lame.mu * (stretch + g.less_one * (stretch + 3)) + 0.5 * bulk_of(lame) * swelling * swelling;
-}
-
 // P = μ g F + (μ/2 g' I_C + K (J − 1)) cof F.
 void fem_material_isochoric_stress(const FemMaterial *material, const double F[9], double P[9]) {
   FemLame lame = fem_material_lame(material);

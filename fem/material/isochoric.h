@@ -16,7 +16,6 @@ typedef struct FemMaterialPower {
 } FemMaterialPower;
 FemMaterialPower fem_material_isochoric_power(double swelling); // of J − 1
 
-double fem_material_isochoric_energy(const FemMaterial *material, const double F[9]);
 void fem_material_isochoric_stress(const FemMaterial *material, const double F[9], double P[9]);
 
 #endif

@@ -12,18 +12,6 @@ FemMaterialLog fem_material_log(double swelling) {
   return (FemMaterialLog){log(least) + x - 0.5 * x * x, (1 - x) / least, -1 / (least * least)};
 }
 
-// μ/2 (I_C − 3) − μ θ + λ/2 θ², I_C − 3 from the displacement gradient.
-double fem_material_log_energy(const FemMaterial *material, const double F[9]) {
-  FemLame lame = fem_material_lame(material);
-  double stretch = 0;
-  for (int r = 0; r < 9; r++) {
-    double G = F[r] - (r % 4 == 0);
-    stretch += G * G + (r % 4 == 0 ? 2 * G : 0);
-  }
-  double theta = fem_material_log(fem_cofactor_swelling(F)).value;
-  return lame.mu * (0.5 * stretch - theta) + 0.5 * lame.lambda * theta * theta;
-}
-
 // P = μ F + (λ θ − μ) θ' cof F.
 void fem_material_log_stress(const FemMaterial *material, const double F[9], double P[9]) {
   FemLame lame = fem_material_lame(material);

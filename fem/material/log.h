@@ -16,7 +16,6 @@ typedef struct FemMaterialLog {
 } FemMaterialLog;
 FemMaterialLog fem_material_log(double swelling); // of J − 1
 
-double fem_material_log_energy(const FemMaterial *material, const double F[9]);
 void fem_material_log_stress(const FemMaterial *material, const double F[9], double P[9]);
 
 #endif

@@ -83,11 +83,6 @@ static void find_small_strain(const double F[9], double strain[9]) {
     for (int j = 0; j < 3; j++) strain[3 * i + j] = 0.5 * (F[3 * i + j] + F[3 * j + i]) - (i == j);
 }
 
-static double quadratic_energy(FemLame lame, const double strain[9]) {
-  double trace = strain[0] + strain[4] + strain[8];
-  return lame.mu * dot9(strain, strain) + 0.5 * lame.lambda * trace * trace;
-}
-
 // 2μ e + λ tr e I.
 static void apply_hooke(FemLame lame, const double strain[9], double stress[9]) {
   double pressure = lame.lambda * (strain[0] + strain[4] + strain[8]);
@@ -102,18 +97,6 @@ static void linear_stress(FemLame lame, const double F[9], double P[9]) {
 }
 
 // Corotational: P = 2μ (F − R) + λ tr(S − I) R.
-
-static double corotational_energy(FemLame lame, const double F[9]) {
-  FemSvd3 svd;
-  fem_svd3_factor(&svd, F);
-  double squares = 0, trace = 0;
-  for (int k = 0; k < 3; k++) {
-    double stretch = svd.sigma[k] - 1;
-    squares += stretch * stretch;
-    trace += stretch;
-  }
-  return lame.mu * squares + 0.5 * lame.lambda * trace * trace;
-}
 
 static double stretch_trace(const FemSvd3 *svd) {
   return (svd->sigma[0] - 1) + (svd->sigma[1] - 1) + (svd->sigma[2] - 1);
@@ -187,16 +170,6 @@ static inline double cofactor_weight(FemLame own, const double F[9], const doubl
   return own.lambda * (J - 1) - 0.75 * own.mu;
 }
 
-static double neo_hookean_energy(FemLame lame, const double F[9]) {
-  FemLame own = neo_hookean_parameters(lame);
-  double G[9];
-  for (int r = 0; r < 9; r++) G[r] = F[r] - (r % 4 == 0);
-  // I_C − 3 from the displacement gradient: no cancellation at small strain.
-  double stretch = 2 * (G[0] + G[4] + G[8]) + dot9(G, G), swelling = fem_cofactor_swelling(F);
-  return 0.5 * own.mu * (stretch - log1p(0.25 * stretch) - 1.5 * swelling) +
-         0.5 * own.lambda * swelling * swelling;
-}
-
 // P = μ' (1 − 1/(I_C + 1)) F + λ' (J − α) cof F.
 static void neo_hookean_stress(FemLame lame, const double F[9], double P[9]) {
   FemLame own = neo_hookean_parameters(lame);
@@ -232,39 +205,6 @@ static void add_fibre_stress(const FemMaterial *material, const double F[9], dou
   Fibre fibre = fibre_of(material, F);
   for (int r = 0; r < 9; r++)
     P[r] += fibre.stiffness * fibre.strain * fibre.pushed[r / 3] * fibre.direction[r % 3];
-}
-
-static double law_energy(const FemMaterial *material, const double F[9]) {
-  FemLame lame = fem_material_lame(material);
-  double strain[9];
-  switch (material->law) {
-  case FEM_MATERIAL_LINEAR:
-    find_small_strain(F, strain);
-    return quadratic_energy(lame, strain);
-  case FEM_MATERIAL_COROTATIONAL:
-    return corotational_energy(lame, F);
-  case FEM_MATERIAL_STVK:
-    find_green_strain(F, strain);
-    return quadratic_energy(lame, strain);
-  case FEM_MATERIAL_NEO_HOOKEAN:
-    return neo_hookean_energy(lame, F);
-  case FEM_MATERIAL_NEO_HOOKEAN_LOG:
-    return fem_material_log_energy(material, F);
-  case FEM_MATERIAL_NEO_HOOKEAN_ISOCHORIC:
-    return fem_material_isochoric_energy(material, F);
-  case FEM_MATERIAL_MOONEY_RIVLIN:
-    return fem_material_mooney_energy(material, F);
-  case FEM_MATERIAL_OGDEN:
-    return fem_material_ogden_energy(material, F);
-  }
-  return NAN;
-}
-
-double fem_material_energy(const FemMaterial *material, const double F[9]) {
-  double own = law_energy(material, F);
-  if (!(material->fibre_stiffness > 0)) return own;
-  Fibre fibre = fibre_of(material, F);
-  return own + 0.5 * fibre.stiffness * fibre.strain * fibre.strain;
 }
 
 void fem_material_stress(const FemMaterial *material, const double F[9], double P[9]) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Constitutive laws of isotropic elastic solids: energy density Ψ(F) and first Piola–Kirchhoff stress P =
-// ∂Ψ/∂F, exact, for every F, inverted ones included; ∂P/∂F is in fem/lanes/law.inc. Matrices are row-major:
-// F[3 i + j] = ∂x_i/∂X_j; 9 × 9 ones have rows and columns in that order.
+// Constitutive laws of isotropic elastic solids: the first Piola–Kirchhoff stress P = ∂Ψ/∂F of an energy
+// density Ψ(F) [J/m³], exact, for every F, inverted ones included; Ψ is in fem/lanes/energy.inc, ∂P/∂F in
+// fem/lanes/law.inc. Matrices are row-major: F[3 i + j] = ∂x_i/∂X_j; 9 × 9 ones have rows and columns in that
+// order.
 //
 // With λ, μ of the given E, ν, every law has Ψ = 0, P = 0 and the isotropic tangent of E, ν at F = I; all but
 // `linear` also have Ψ(QF) = Ψ(F) for rotations Q:
@@ -53,7 +54,6 @@ const char *fem_material_help(FemMaterialLaw law);
 // Why an element of this law may be turned inside out by a load, and what to do; for messages.
 const char *fem_material_limit(FemMaterialLaw law);
 
-double fem_material_energy(const FemMaterial *material, const double F[9]);            // Ψ [J/m³]
 void fem_material_stress(const FemMaterial *material, const double F[9], double P[9]); // [Pa]
 
 // Cauchy stress σ = P Fᵀ / J [Pa] of a stress P: xx, yy, zz, xy, yz, xz. Zero where |J| ≤ 1e-12. The linear

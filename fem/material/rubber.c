@@ -27,19 +27,6 @@ static Mooney mooney_of(const FemMaterial *material) {
   return m;
 }
 
-// I₁ − 3 = ‖F‖² − 3 and I₂ − 3 = ‖cof F‖² − 3 from G = F − I, where cof F − I = tr G I − Gᵀ + cof G.
-double fem_material_mooney_energy(const FemMaterial *material, const double F[9]) {
-  Mooney m = mooney_of(material);
-  double G[9], H[9];
-  for (int r = 0; r < 9; r++) G[r] = F[r] - (r % 4 == 0);
-  fem_cofactor_find(G, H);
-  double trace = G[0] + G[4] + G[8], swelling = fem_cofactor_swelling(F);
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) H[3 * i + j] += (i == j ? trace : 0) - G[3 * j + i];
-  double first = 2 * trace + dot9(G, G), second = 2 * (H[0] + H[4] + H[8]) + dot9(H, H);
-  return m.c1 * first + m.c2 * second - m.d * swelling + 0.5 * m.kappa * swelling * swelling;
-}
-
 // P = 2c₁ F + 2c₂ D(F) cof F + (κ' (J − 1) − d) cof F with D = ∂cof/∂F, which is linear in F.
 void fem_material_mooney_stress(const FemMaterial *material, const double F[9], double P[9]) {
   Mooney m = mooney_of(material);
@@ -86,37 +73,9 @@ static FemOgdenForce ogden_force(const FemOgden *law, double stretch) {
   return (FemOgdenForce){edge.value + edge.slope * (stretch - least), edge.slope};
 }
 
-// w(σ) = Σ μ_p/α_p (σ^α_p − 1)
-static double ogden_energy(const FemOgden *law, double stretch) {
-  const double least = FEM_MATERIAL_OGDEN_SMALLEST, kept = fmax(stretch, least), way = stretch - kept;
-  double sum = 0;
-  for (int p = 0; p < 3; p++) {
-    double alpha = law->power[p] + 1;
-    if (law->own[p] != 0) sum += law->own[p] / alpha * expm1(alpha * log1p(kept - 1));
-  }
-  if (way == 0) return sum;
-  FemOgdenForce edge = ogden_power(law, least);
-  return sum + edge.value * way + 0.5 * edge.slope * way * way;
-}
-
 // d = w'(1) makes the stress at rest zero; κ' = λ + d.
 static double ogden_rest(const FemOgden *law) {
   return law->own[0] + law->own[1] + law->own[2];
-}
-
-// With e = σ − 1: Σ (w − d e) − d (e₁e₂ + e₂e₃ + e₃e₁ + e₁e₂e₃) + …, of second order part by part.
-double fem_material_ogden_energy(const FemMaterial *material, const double F[9]) {
-  FemSvd3 svd;
-  fem_svd3_factor(&svd, F);
-  FemOgden law = fem_material_ogden(material);
-  double d = ogden_rest(&law), kappa = fem_material_lame(material).lambda + d;
-  double swelling = fem_cofactor_swelling(F), sum = 0, e[3];
-  for (int k = 0; k < 3; k++) {
-    e[k] = svd.sigma[k] - 1;
-    sum += ogden_energy(&law, svd.sigma[k]) - d * e[k];
-  }
-  sum -= d * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0] + e[0] * e[1] * e[2]);
-  return sum + 0.5 * kappa * swelling * swelling;
 }
 
 void fem_material_ogden_stress(const FemMaterial *material, const double F[9], double P[9]) {

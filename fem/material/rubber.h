@@ -6,10 +6,7 @@
 
 #include "fem/material/law.h"
 
-double fem_material_mooney_energy(const FemMaterial *material, const double F[9]);
 void fem_material_mooney_stress(const FemMaterial *material, const double F[9], double P[9]);
-
-double fem_material_ogden_energy(const FemMaterial *material, const double F[9]);
 void fem_material_ogden_stress(const FemMaterial *material, const double F[9], double P[9]);
 
 // Below this stretch Ogden's w goes on as its parabola, so that it is finite for σ ≤ 0. Sums of stretches

@@ -153,7 +153,7 @@
 #define FEM_NEWTON_RENEWALS 5
 
 // What a linear solution may leave: of what Newton's test lets pass, and of the right-hand side.
-// Held by no test: three times as much or as little changes numbers of steps by 2 % at most.
+// Held by test_newton; three times as much or as little changes numbers of steps by 2 % at most.
 #define FEM_SOLVED (2 * FEM_DOUBT)
 
 #endif

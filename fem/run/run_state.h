@@ -45,7 +45,6 @@ typedef struct FemRunState {
   FemCheckpoint checkpoint; // where this part began
   FemTrouble mesh_trouble;  // of the mesh itself, before anything moves
   bool is_written;          // is that in the file
-  int interval;             // frames between two checkpoints; 0: none
   // Clocks: of this part, time within MPI then (base/ranks.h), and when a checkpoint was written.
   double began_s, cpu_began_s, inside_began_s, written_s;
 } FemRunState;

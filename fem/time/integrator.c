@@ -350,16 +350,6 @@ Status fem_integrator_at(FemIntegrator *integrator, double time, const double **
   return STATUS_OK;
 }
 
-void fem_integrator_state(const FemIntegrator *integrator, double *time, const double **u, const double **v) {
-  *time = integrator->time;
-  *u = fem_part_join(&integrator->part, values_of(integrator->y));
-  *v = *u + integrator->part.n;
-}
-
-const double *fem_integrator_acceleration(const FemIntegrator *integrator) {
-  return values_of(integrator->y_dot) + integrator->n;
-}
-
 static FemReason reason_of(int flag) {
   switch (flag) {
   case IDA_ERR_FAIL:

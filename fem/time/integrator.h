@@ -70,13 +70,9 @@ Status fem_integrator_step(FemIntegrator *integrator, double *time);
 // others from there on.
 bool fem_integrator_is_at_knot(const FemIntegrator *integrator);
 
-// The solution at a time within the last step; u, v of size n, borrowed until the next call.
+// The solution at a time within the last step, at its end to the last bit, or where a restart began; u, v of
+// size n, by all ranks, borrowed until the next call.
 Status fem_integrator_at(FemIntegrator *integrator, double time, const double **u, const double **v);
-
-// The state that the last step or restart ended at; u, v of size n, by all ranks; of accelerations [m/s²]
-// those of this rank's unknowns. Borrowed until the next call.
-void fem_integrator_state(const FemIntegrator *integrator, double *time, const double **u, const double **v);
-const double *fem_integrator_acceleration(const FemIntegrator *integrator);
 
 FemIntegratorStats fem_integrator_stats(const FemIntegrator *integrator);
 const FemSolverStats *fem_integrator_solver_stats(const FemIntegrator *integrator);

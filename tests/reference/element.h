@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces and matrices of one element, linear and quadratic, by the formulas of fem/element and fem/material:
-// what vector lanes are compared with.
+// Energies, forces and matrices of one element, linear and quadratic, by the formulas of fem/element and
+// fem/material: what vector lanes are compared with.
 #ifndef TETLAP_TESTS_REFERENCE_ELEMENT_H
 #define TETLAP_TESTS_REFERENCE_ELEMENT_H
 
 #include "fem/element/element.h"
 #include "fem/element/quadratic.h"
 
+double reference_element_energy(const FemElement *element, const FemMaterial *material,
+                                const double x[12]); // U [J]
 void reference_element_force(const FemElement *element, const FemMaterial *material, const double x[12],
                              double force[12]); // −∂U/∂x [N]
 void reference_element_stiffness(const FemElement *element, const FemMaterial *material, const double x[12],
@@ -24,6 +26,8 @@ void reference_element_damping_stiffness(const FemElement *element, const FemMat
 
 // A straight quadratic one. `corners` (4, 3) at rest, positively oriented and of positive volume.
 void reference_quadratic_create(FemQuadratic *element, const double corners[12]);
+double reference_quadratic_energy(const FemQuadratic *element, FemQuadraticLaw law,
+                                  const double x[30]); // U [J]
 void reference_quadratic_force(const FemQuadratic *element, FemQuadraticLaw law, const double x[30],
                                double force[30]); // −∂U/∂x [N]
 void reference_quadratic_stiffness(const FemQuadratic *element, FemQuadraticLaw law, const double x[30],

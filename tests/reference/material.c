@@ -333,6 +333,130 @@ static void add_fibre_tangent(const FemMaterial *material, const double F[9], do
     }
 }
 
+// Ψ by law.
+
+static void find_small_strain(const double F[9], double strain[9]) {
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) strain[3 * i + j] = 0.5 * (F[3 * i + j] + F[3 * j + i]) - (i == j);
+}
+
+static double quadratic_energy(FemLame lame, const double strain[9]) {
+  double trace = strain[0] + strain[4] + strain[8];
+  return lame.mu * dot9(strain, strain) + 0.5 * lame.lambda * trace * trace;
+}
+
+static double corotational_energy(FemLame lame, const double F[9]) {
+  FemSvd3 svd;
+  fem_svd3_factor(&svd, F);
+  double squares = 0, trace = 0;
+  for (int k = 0; k < 3; k++) {
+    double stretch = svd.sigma[k] - 1;
+    squares += stretch * stretch;
+    trace += stretch;
+  }
+  return lame.mu * squares + 0.5 * lame.lambda * trace * trace;
+}
+
+static double neo_hookean_energy(FemLame lame, const double F[9]) {
+  FemLame own = neo_hookean_parameters(lame);
+  double G[9];
+  for (int r = 0; r < 9; r++) G[r] = F[r] - (r % 4 == 0);
+  // I_C − 3 from the displacement gradient: no cancellation at small strain.
+  double stretch = 2 * (G[0] + G[4] + G[8]) + dot9(G, G), swelling = fem_cofactor_swelling(F);
+  return 0.5 * own.mu * (stretch - log1p(0.25 * stretch) - 1.5 * swelling) +
+         0.5 * own.lambda * swelling * swelling;
+}
+
+// μ/2 (I_C − 3) − μ θ + λ/2 θ², I_C − 3 from the displacement gradient.
+static double log_energy(const FemMaterial *material, const double F[9]) {
+  FemLame lame = fem_material_lame(material);
+  double stretch = stretch_of(F);
+  double theta = fem_material_log(fem_cofactor_swelling(F)).value;
+  return lame.mu * (0.5 * stretch - theta) + 0.5 * lame.lambda * theta * theta;
+}
+
+// μ/2 (g I_C − 3) + K/2 (J − 1)².
+static double isochoric_energy(const FemMaterial *material, const double F[9]) {
+  FemLame lame = fem_material_lame(material);
+  double swelling = fem_cofactor_swelling(F), stretch = stretch_of(F);
+  FemMaterialPower g = fem_material_isochoric_power(swelling);
+  return 0.5 * lame.mu * (stretch + g.less_one * (stretch + 3)) + 0.5 * bulk_of(lame) * swelling * swelling;
+}
+
+// I₁ − 3 = ‖F‖² − 3 and I₂ − 3 = ‖cof F‖² − 3 from G = F − I, where cof F − I = tr G I − Gᵀ + cof G.
+static double mooney_energy(const FemMaterial *material, const double F[9]) {
+  Mooney m = mooney_of(material);
+  double G[9], H[9];
+  for (int r = 0; r < 9; r++) G[r] = F[r] - (r % 4 == 0);
+  fem_cofactor_find(G, H);
+  double trace = G[0] + G[4] + G[8], swelling = fem_cofactor_swelling(F);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) H[3 * i + j] += (i == j ? trace : 0) - G[3 * j + i];
+  double first = 2 * trace + dot9(G, G), second = 2 * (H[0] + H[4] + H[8]) + dot9(H, H);
+  return m.c1 * first + m.c2 * second - m.d * swelling + 0.5 * m.kappa * swelling * swelling;
+}
+
+// w(σ) = Σ μ_p/α_p (σ^α_p − 1)
+static double power_energy(const FemOgden *law, double stretch) {
+  const double least = FEM_MATERIAL_OGDEN_SMALLEST, kept = fmax(stretch, least), way = stretch - kept;
+  double sum = 0;
+  for (int p = 0; p < 3; p++) {
+    double alpha = law->power[p] + 1;
+    if (law->own[p] != 0) sum += law->own[p] / alpha * expm1(alpha * log1p(kept - 1));
+  }
+  if (way == 0) return sum;
+  FemOgdenForce edge = ogden_power(law, least);
+  return sum + edge.value * way + 0.5 * edge.slope * way * way;
+}
+
+// With e = σ − 1: Σ (w − d e) − d (e₁e₂ + e₂e₃ + e₃e₁ + e₁e₂e₃) + …, of second order part by part.
+static double ogden_energy(const FemMaterial *material, const double F[9]) {
+  FemSvd3 svd;
+  fem_svd3_factor(&svd, F);
+  FemOgden law = fem_material_ogden(material);
+  double d = ogden_rest(&law), kappa = fem_material_lame(material).lambda + d;
+  double swelling = fem_cofactor_swelling(F), sum = 0, e[3];
+  for (int k = 0; k < 3; k++) {
+    e[k] = svd.sigma[k] - 1;
+    sum += power_energy(&law, svd.sigma[k]) - d * e[k];
+  }
+  sum -= d * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0] + e[0] * e[1] * e[2]);
+  return sum + 0.5 * kappa * swelling * swelling;
+}
+
+static double law_energy(const FemMaterial *material, const double F[9]) {
+  FemLame lame = fem_material_lame(material);
+  double strain[9];
+  switch (material->law) {
+  case FEM_MATERIAL_LINEAR:
+    find_small_strain(F, strain);
+    return quadratic_energy(lame, strain);
+  case FEM_MATERIAL_COROTATIONAL:
+    return corotational_energy(lame, F);
+  case FEM_MATERIAL_STVK:
+    find_green_strain(F, strain);
+    return quadratic_energy(lame, strain);
+  case FEM_MATERIAL_NEO_HOOKEAN:
+    return neo_hookean_energy(lame, F);
+  case FEM_MATERIAL_NEO_HOOKEAN_LOG:
+    return log_energy(material, F);
+  case FEM_MATERIAL_NEO_HOOKEAN_ISOCHORIC:
+    return isochoric_energy(material, F);
+  case FEM_MATERIAL_MOONEY_RIVLIN:
+    return mooney_energy(material, F);
+  case FEM_MATERIAL_OGDEN:
+    return ogden_energy(material, F);
+  }
+  return NAN;
+}
+
+double reference_energy(const FemMaterial *material, const double F[9]) {
+  double own = law_energy(material, F);
+  if (!(material->fibre_stiffness > 0)) return own;
+  Fibre fibre = fibre_of(material, F);
+  return own + 0.5 * fibre.stiffness * fibre.strain * fibre.strain;
+}
+
 void reference_tangent(const FemMaterial *material, const double F[9], double dP[81]) {
   FemLame lame = fem_material_lame(material);
   switch (material->law) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// ∂P/∂F of the laws of fem/material/material.h and damping at a point, one point at a time, as the formulas
-// have them: what vector lanes (fem/lanes/lanes.h), which never form ∂P/∂F, are compared with.
+// Ψ and ∂P/∂F of the laws of fem/material/material.h and damping at a point, one point at a time, as the
+// formulas have them: what vector lanes (fem/lanes/lanes.h), which never form ∂P/∂F, are compared with.
 #ifndef TETLAP_TESTS_REFERENCE_MATERIAL_H
 #define TETLAP_TESTS_REFERENCE_MATERIAL_H
 
 #include "fem/material/material.h"
 
+double reference_energy(const FemMaterial *material, const double F[9]);               // Ψ [J/m³]
 void reference_tangent(const FemMaterial *material, const double F[9], double dP[81]); // [Pa]
 
 // F C Fᵀ with the small-strain C of the Lamé parameters: what a strain dE = sym(Fᵀ dF) answers with, dP = F

@@ -24,6 +24,7 @@
 #include "fem/run/checkpoint/checkpoint.h"
 #include "fem/run/run.h"
 #include "overlap/models.h"
+#include "scene_text.h"
 #include "suite.h"
 
 enum { MOST_LIVE = 1 << 16 };
@@ -377,7 +378,7 @@ static Status weigh(void *self, const FemRunProgress *progress) {
 // A thousand frames, each with a line of the history, and ten checkpoints later: less than a byte a frame,
 // which is room for numbers that have become longer.
 START_TEST(a_run_holds_no_more_the_more_frames_it_has_written) {
-  ck_assert_ok(app_scene_read_text("falling.yaml", falling, strlen(falling), &job.scene));
+  ck_assert_ok(scene_text_read("falling.yaml", falling, strlen(falling), &job.scene));
   ck_assert_ok(fem_model_create(&job.model, &job.scene));
   Holding holding = {0};
   FemRunOptions options = {.directory = folder, .observe = weigh, .observer = &holding};

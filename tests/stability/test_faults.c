@@ -15,12 +15,12 @@
 #include <unistd.h>
 
 #include "app/command/scene/run.h"
-#include "app/scene/read.h"
 #include "base/files/file.h"
 #include "base/memory.h"
 #include "fem/model/build.h"
 #include "fem/run/run.h"
 #include "overlap/models.h"
+#include "scene_text.h"
 #include "suite.h"
 
 // Where a fault strikes: at the call `first` of its kind, counted from 1, and at `count` calls from there. 0:
@@ -218,7 +218,7 @@ typedef struct Run {
 
 static void run(Run *run, const char *text) {
   *run = (Run){0};
-  ck_assert_ok(app_scene_read_text("faults.yaml", text, strlen(text), &run->scene));
+  ck_assert_ok(scene_text_read("faults.yaml", text, strlen(text), &run->scene));
   ck_assert_ok(fem_model_create(&run->model, &run->scene));
   FemRunOptions options = {.keep_trajectory = true};
   run->status = fem_run(&run->model, &options, &run->result);

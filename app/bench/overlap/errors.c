@@ -2,9 +2,9 @@
 #include "app/bench/overlap/errors.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
+#include "base/sorted.h"
 #include "overlap/models.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE };
@@ -32,11 +32,6 @@ Status app_bench_truth_create(AppBenchTruth *truth, int count, const double *pai
 void app_bench_truth_destroy(AppBenchTruth *truth) {
   memory_free(truth->volume), memory_free(truth->gradient);
   *truth = (AppBenchTruth){0};
-}
-
-static int compare(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
 }
 
 static double distance(const double *a, const double *b, int count) {
@@ -67,7 +62,7 @@ static void sum_up(const AppBenchTruth *truth, const Answers *told, int count, b
   }
   *errors = (AppBenchErrors){NAN, NAN, NAN, fallbacks / count, count};
   if (!(total > 0)) return;
-  qsort(told->relative, (size_t)inside, sizeof *told->relative, compare);
+  sorted_values(told->relative, (size_t)inside);
   errors->error = sum / total;
   errors->median = told->relative[inside / 2];
   errors->p90 = told->relative[(int)(0.9 * (inside - 1))];

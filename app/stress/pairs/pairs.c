@@ -30,8 +30,7 @@ typedef struct Asked {
   const OverlapModel *model;
   bool has_gradient; // else V alone is graded
   AppStressPairErrors worst;
-  double misfit;       // worst volume-like error over what the standard allows
-  double gradient_max; // largest ∇V met, over the extent squared
+  double misfit; // worst volume-like error over what the standard allows
   long long member_count, true_count, wrong_flags;
   long long overlap_count, missed; // pairs that share a volume, and of those the ones said to share none
   long long fallbacks;             // answers that the model left to another

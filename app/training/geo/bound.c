@@ -5,7 +5,6 @@
 // (overlap/hybrid/sure.h). The validation data hold them.
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "app/training/geo/fold.h"
@@ -13,6 +12,7 @@
 #include "app/training/sets.h"
 #include "app/training/task.h"
 #include "base/memory.h"
+#include "base/sorted.h"
 #include "overlap/geo/model.h"
 #include "overlap/weights.h"
 
@@ -133,7 +133,6 @@ static Status create(AppTrainingTask *task, const NetWhitening *whitening) {
   TRY(load_pool(task, whitening));
   TRY(load_sets(task));
   TRY(app_training_order_create(&bound->order, bound->pool.count));
-  task->sample_count = bound->pool.count;
   int used = snprintf(task->summary, sizeof task->summary, "errors of %s in ", task->config->model.of);
   if (used < (int)sizeof task->summary)
     app_training_pool_describe(&bound->pool, bound->unanswered, task->summary + used,
@@ -192,11 +191,6 @@ static Status write(const AppTrainingTask *task, const NetModel_f32 *model, cons
   return app_training_fold_write(&fold, path);
 }
 
-static int compare(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 // V and bound of all held-out pairs, by both networks.
 static Status evaluate_networks(const Bound *bound, const char *path) {
   OverlapGeoNet *net;
@@ -239,8 +233,8 @@ static Status validate(AppTrainingTask *task, const NetModel_f32 *model, const c
   if (place > count || count == 0)
     return status_fail(STATUS_INPUT, "%s: %zu held-out pairs with volume are too few for a share of %g",
                        task->config->path, count, task->config->loss.quantile);
-  qsort(bound->log_errors, count, sizeof(double), compare);
-  qsort(bound->log_widths, count, sizeof(double), compare);
+  sorted_values(bound->log_errors, count);
+  sorted_values(bound->log_widths, count);
   bound->correction = bound->log_errors[place - 1];
   double sum = 0;
   for (size_t i = 0; i < count; i++) sum += bound->log_widths[i];

@@ -98,7 +98,6 @@ static Status create(AppTrainingTask *task, const NetWhitening *whitening) {
   TRY(load_pool(task, whitening));
   TRY(app_training_sets_load(&geo->sets, task->config));
   TRY(app_training_order_create(&geo->order, geo->pool.count));
-  task->sample_count = geo->pool.count;
   app_training_pool_describe(&geo->pool, 0, task->summary, sizeof task->summary);
   return create_batch(geo, task->config);
 }

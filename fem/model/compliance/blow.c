@@ -86,11 +86,6 @@ static double energy_of(const FemModel *model, const FemModelBody *body, const G
   return energy + body->mass * g * fmin(fall_of(model, body, gravity), farthest);
 }
 
-double fem_blow_energy(const FemModel *model, int body) {
-  const Gravity gravity = gravity_of(model);
-  return energy_of(model, &model->bodies[body], &gravity);
-}
-
 double fem_blow_hardest(const FemModel *model) {
   const Gravity gravity = gravity_of(model);
   double hardest = 0;

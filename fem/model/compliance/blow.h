@@ -11,10 +11,7 @@
 
 #include "fem/model/model.h"
 
-// Of that body of the scene [J]; 0 in a static scene.
-double fem_blow_energy(const FemModel *model, int body);
-
-// The largest of any body.
+// The largest of any body of the scene [J]; 0 in a static scene.
 double fem_blow_hardest(const FemModel *model);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "base/files/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "fem/output/vtk/pieces.h"
 
 enum { MAX_PIECES = 1 << 16, MAX_COUNT = 1 << 28 };
@@ -168,7 +169,7 @@ static Status add_source(Sources *sources, const char *begin, const char *folder
   if (!name) return status_no_memory("a file name");
   memcpy(name, begin, length);
   // A piece lies beside its list, and is none itself.
-  bool is_beside = length > 4 && !strchr(name, '/') && strcmp(name + length - 4, ".vtu") == 0;
+  bool is_beside = !strchr(name, '/') && text_ends_in(name, ".vtu");
   char *path = is_beside ? file_join(folder, name) : NULL;
   memory_free(name);
   if (!is_beside) return refuse("a piece is no .vtu file beside the list");

@@ -59,7 +59,6 @@ typedef struct PetscSolver {
   FemCg cg;
   const FemMatrix *current; // borrowed, of the last factorise; NULL: none
   long long layout;         // that was analysed
-  long long rows_layout;    // whose rows gamg has
   FemSolverStats stats;
 } PetscSolver;
 
@@ -97,7 +96,6 @@ static void forget_multigrid(PetscSolver *solver) {
   fem_cycle_destroy(&solver->cycle);
   solver->multigrid = NULL, solver->matrix = NULL;
   free_rows(&solver->rows);
-  solver->rows_layout = 0;
 }
 
 static void forget(PetscSolver *solver) {

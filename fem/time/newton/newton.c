@@ -94,7 +94,6 @@ static int make_matrix(Solve *solve) {
 static bool renew(Solve *solve) {
   if (solve->renewals >= FEM_NEWTON_RENEWALS) return false;
   solve->renewals++;
-  solve->newton->stats.renewed++;
   solve->wants_matrix = solve->was_bad = true;
   return true;
 }
@@ -210,7 +209,6 @@ static int check_convergence(Solve *solve, bool *has_converged) {
   *has_converged = *has_converged || is_left;
   if (*has_converged) return 0;
   solve->is_good_enough = solve->is_good_enough || passes;
-  newton->stats.polished += passes;
   if (!passes && verdict != SUN_NLS_CONTINUE) return renew(solve) ? 0 : SUN_NLS_CONV_RECVR;
   if (!solve->is_newest && is_slow(solve, solve->size, before, solve->excess)) renew(solve);
   return 0;
@@ -233,7 +231,6 @@ static int iterate(Solve *solve, bool *has_converged) {
   if (flag != 0) return flag;
   fem_mixing_take(&newton->mixing, share, N_VGetArrayPointer(newton->direction));
   if (share == 1) return check_convergence(solve, has_converged);
-  newton->stats.shortened++;
   solve->size = 0;
   return renew(solve) ? 0 : SUN_NLS_CONV_RECVR;
 }
@@ -262,9 +259,6 @@ static int solve_step(SUNNonlinearSolver solver, N_Vector predicted, N_Vector co
   fem_mixing_forget(&newton->mixing);
   int flag = run(&solve);
   newton->failures = flag != SUN_SUCCESS;
-  newton->stats.solves++;
-  newton->stats.iterations += newton->iterations;
-  newton->stats.failures += newton->failures;
   return flag;
 }
 

@@ -39,18 +39,9 @@ typedef struct FemNewtonUser {
   void (*aim)(void *self, double tolerance);
 } FemNewtonUser;
 
-// Since creation.
-typedef struct FemNewtonStats {
-  long long solves, iterations, failures;
-  long long shortened; // steps of the method that a line search cut
-  long long renewed;   // matrices made anew within a solve
-  long long polished;  // iterations that only the balance asked for
-} FemNewtonStats;
-
 typedef struct FemNewton {
   SUNNonlinearSolver solver;
   FemNewtonUser user;
-  FemNewtonStats stats;
   SUNNonlinSolSysFn evaluate;
   SUNNonlinSolLSetupFn set_up;
   SUNNonlinSolLSolveFn solve;

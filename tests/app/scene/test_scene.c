@@ -11,6 +11,7 @@
 #include "app/scene/write.h"
 #include "base/files/record.h"
 #include "base/memory.h"
+#include "scene_text.h"
 
 static const char *const full_yaml = TETLAP_SOURCE_DIR "/tests/data/scene/full.yaml";
 static const char *const full_json = TETLAP_SOURCE_DIR "/tests/data/scene/full.json";
@@ -309,7 +310,7 @@ START_TEST(absent_keys_take_their_defaults) {
   const char *text = "time: {end: 1}\n"
                      "bodies: [{name: a, mesh: a.msh, material: {young: 1, poisson: 0, density: 1}}]\n";
   FemSceneDef scene;
-  ck_assert_ok(app_scene_read_text("s.yaml", text, strlen(text), &scene));
+  ck_assert_ok(scene_text_read("s.yaml", text, strlen(text), &scene));
   ck_assert(!scene.has_gravity && !scene.contact.is_on);
   ck_assert_double_eq(scene.tolerance, 1e-4);
   ck_assert_double_eq(scene.max_step, 0);
@@ -329,7 +330,7 @@ START_TEST(an_empty_contact_section_turns_contact_on) {
   const char *text = "time: {end: 1}\ncontact: {}\n"
                      "bodies: [{name: a, mesh: a.msh, material: {young: 1, poisson: 0, density: 1}}]\n";
   FemSceneDef scene;
-  ck_assert_ok(app_scene_read_text("s.yaml", text, strlen(text), &scene));
+  ck_assert_ok(scene_text_read("s.yaml", text, strlen(text), &scene));
   ck_assert(scene.contact.is_on);
   ck_assert_double_eq(scene.contact.stiffness, 0);
   ck_assert_int_eq(scene.contact.potential, CONTACT_POTENTIAL_FIELD);
@@ -342,7 +343,7 @@ START_TEST(a_resolved_scene_is_the_same_scene) {
   FemSceneDef scene, again;
   ck_assert_ok(app_scene_read(full_yaml, NULL, 0, &scene));
   char *text = resolved(&scene);
-  ck_assert_ok(app_scene_read_text("resolved.json", text, strlen(text), &again));
+  ck_assert_ok(scene_text_read("resolved.json", text, strlen(text), &again));
   check_full(&again);
   char *text_again = resolved(&again);
   ck_assert_str_eq(text, text_again);
@@ -369,7 +370,7 @@ static void check_written_back(const char *path) {
   ck_assert_ok(app_scene_read(path, NULL, 0, &scene));
   ck_assert_ptr_nonnull(scene.title);
   char *text = resolved(&scene);
-  ck_assert_ok(app_scene_read_text(path, text, strlen(text), &again));
+  ck_assert_ok(scene_text_read(path, text, strlen(text), &again));
   char *text_again = resolved(&again);
   ck_assert_str_eq(text, text_again);
   free(text), free(text_again);
@@ -408,7 +409,7 @@ START_TEST(numbers_are_read_as_people_write_them) {
     char text[512];
     snprintf(text, sizeof text, "time: {end: %s}\n" BODY, cases[i].text);
     FemSceneDef scene;
-    ck_assert_ok(app_scene_read_text("s.yaml", text, strlen(text), &scene));
+    ck_assert_ok(scene_text_read("s.yaml", text, strlen(text), &scene));
     ck_assert_double_eq(scene.end, cases[i].value);
     fem_scene_destroy(&scene);
   }
@@ -418,7 +419,7 @@ END_TEST
 START_TEST(infinity_is_allowed_where_the_range_has_it) {
   const char *text = "time: {end: 1}\n" BODY_WITH("driven: [{all: true, velocity: [0, 0, 1], until: .inf}]");
   FemSceneDef scene;
-  ck_assert_ok(app_scene_read_text("s.yaml", text, strlen(text), &scene));
+  ck_assert_ok(scene_text_read("s.yaml", text, strlen(text), &scene));
   ck_assert(isinf(scene.bodies[0].driven[0].until));
   fem_scene_destroy(&scene);
 }
@@ -427,7 +428,7 @@ END_TEST
 START_TEST(a_table_may_be_written_flat) {
   const char *text = "time: {end: 1}\n" BODY_WITH("driven: [{all: true, table: [0, 0, 0, 0, 1, 0, 0, 5]}]");
   FemSceneDef scene;
-  ck_assert_ok(app_scene_read_text("s.yaml", text, strlen(text), &scene));
+  ck_assert_ok(scene_text_read("s.yaml", text, strlen(text), &scene));
   ck_assert_int_eq(scene.bodies[0].driven[0].table_count, 2);
   ck_assert_double_eq(scene.bodies[0].driven[0].table[7], 5);
   fem_scene_destroy(&scene);
@@ -522,7 +523,7 @@ START_TEST(a_byte_order_mark_is_read_over) {
                      "time: {end: 1}\n"
                      "bodies: [{name: a, mesh: a.msh, material: {young: 1, poisson: 0, density: 1}}]\n";
   FemSceneDef scene;
-  ck_assert_ok(app_scene_read_text("s.yaml", text, strlen(text), &scene));
+  ck_assert_ok(scene_text_read("s.yaml", text, strlen(text), &scene));
   fem_scene_destroy(&scene);
   Record *record;
   ck_assert_ok(record_parse(&record, "\xef\xbb\xbf{\"a\": 1}", 11, "a.json"));

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/text.h"
+#include "scene_text.h"
 
 static const char *const full_yaml = TETLAP_SOURCE_DIR "/tests/data/scene/full.yaml";
 
@@ -252,7 +253,7 @@ enum { WRONG_COUNT = sizeof wrong / sizeof *wrong };
 START_TEST(a_wrong_scene_is_refused_with_its_place) {
   const Wrong *w = &wrong[_i];
   FemSceneDef scene;
-  Status status = app_scene_read_text("s.yaml", w->text, strlen(w->text), &scene);
+  Status status = scene_text_read("s.yaml", w->text, strlen(w->text), &scene);
   ck_assert_msg(status == STATUS_INPUT, "%s\nstatus %d: %s", w->text, (int)status, status_message());
   ck_assert_msg(strncmp(status_message(), w->message, strlen(w->message)) == 0,
                 "%s\nsaid:     %s\nexpected: %s", w->text, status_message(), w->message);
@@ -276,7 +277,7 @@ START_TEST(a_huge_file_is_refused) {
   char *text = memory_zeroed(size + 1, 1);
   memset(text, ' ', size);
   FemSceneDef scene;
-  ck_assert_int_eq(app_scene_read_text("s.yaml", text, size, &scene), STATUS_INPUT);
+  ck_assert_int_eq(scene_text_read("s.yaml", text, size, &scene), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "at most 16777216"));
   memory_free(text);
 }
@@ -288,11 +289,11 @@ START_TEST(too_many_keys_or_values_are_refused) {
   size_t used = 0;
   for (int i = 0; i <= SCENE_TREE_MAX_KEYS; i++) text_append(text, size, &used, "k%d: 1\n", i);
   FemSceneDef scene;
-  ck_assert_int_eq(app_scene_read_text("s.yaml", text, used, &scene), STATUS_INPUT);
+  ck_assert_int_eq(scene_text_read("s.yaml", text, used, &scene), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "s.yaml:1001:1: more than 1000 keys"));
   text[0] = '[';
   for (size_t i = 0; i <= SCENE_TREE_MAX_NODES; i++) memcpy(text + 1 + 2 * i, "1,", 2);
-  ck_assert_int_eq(app_scene_read_text("s.yaml", text, 2 * SCENE_TREE_MAX_NODES + 2, &scene), STATUS_INPUT);
+  ck_assert_int_eq(scene_text_read("s.yaml", text, 2 * SCENE_TREE_MAX_NODES + 2, &scene), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "more than 1000000 values"));
   memory_free(text);
 }
@@ -301,7 +302,7 @@ END_TEST
 // Whatever stands in a file, reading ends with a scene or with a message that names the file.
 static void check_survives(const char *text, size_t size) {
   FemSceneDef scene;
-  Status status = app_scene_read_text("s.yaml", text, size, &scene);
+  Status status = scene_text_read("s.yaml", text, size, &scene);
   ck_assert(status == STATUS_OK || status == STATUS_INPUT);
   if (status) ck_assert_msg(strncmp(status_message(), "s.yaml:", 7) == 0, "%s", status_message());
   fem_scene_destroy(&scene);

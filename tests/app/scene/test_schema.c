@@ -6,11 +6,11 @@
 #include <string.h>
 
 #include "app/scene/manual.h"
-#include "app/scene/read.h"
 #include "app/scene/schema.h"
 #include "base/files/file.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "scene_text.h"
 
 static const char *const full_yaml = TETLAP_SOURCE_DIR "/tests/data/scene/full.yaml";
 
@@ -113,7 +113,7 @@ START_TEST(the_examples_of_required_keys_make_a_scene) {
   for (int i = 0; (key = app_scene_keys_at(&app_scene_keys_root, i)); i++)
     if (key->required) text_append(text, sizeof text, &used, "%s: %s\n", key->name, key->required);
   FemSceneDef scene;
-  ck_assert_ok(app_scene_read_text("s.yaml", text, used, &scene));
+  ck_assert_ok(scene_text_read("s.yaml", text, used, &scene));
   fem_scene_destroy(&scene);
 }
 END_TEST

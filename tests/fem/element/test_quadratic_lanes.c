@@ -120,7 +120,7 @@ START_TEST(elastic_forces_and_matrices_are_those_of_single_elements) {
       all[k]->quadratic_matrix(law, &eight.lanes, eight.x, 2, matrix);
       for (int l = 0; l < FEM_LANES; l++) {
         double expected[DOFS * DOFS];
-        check_scalar(energy[l], fem_quadratic_energy(&eight.element[l], law, eight.x + DOFS * l), round,
+        check_scalar(energy[l], reference_quadratic_energy(&eight.element[l], law, eight.x + DOFS * l), round,
                      all[k]->name);
         reference_quadratic_force(&eight.element[l], law, eight.x + DOFS * l, expected);
         check_forces(force, l, expected, allowed[round % 4], all[k]->name);

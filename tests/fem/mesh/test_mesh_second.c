@@ -245,7 +245,7 @@ START_TEST(an_element_that_is_inside_out_is_named_and_has_its_corners) {
              "    material: {law: linear, young: 1, poisson: 0.3, density: 6}\n",
              is_quadratic ? "quadratic" : "linear", scratch("a.ele"));
     SceneRun run = {0};
-    ck_assert_ok(app_scene_read_text("test.yaml", text, strlen(text), &run.scene));
+    ck_assert_ok(scene_text_read("test.yaml", text, strlen(text), &run.scene));
     Status status = fem_model_create(&run.model, &run.scene);
     ck_assert_int_eq(status, is_quadratic ? STATUS_INPUT : STATUS_OK);
     if (status) {

@@ -13,6 +13,18 @@
 enum { CUBES = 10, GROUND = 10 };
 static const double G = 9.81, EDGE = 0.1, YOUNG = 1e5;
 
+// With what one body strikes: all others weigh next to nothing.
+static double energy_of(SceneRun *run, int body) {
+  double masses[CUBES];
+  for (int b = 0; b < CUBES; b++) {
+    masses[b] = run->model.bodies[b].mass;
+    if (b != body) run->model.bodies[b].mass *= 1e-12;
+  }
+  double energy = fem_blow_hardest(&run->model);
+  for (int b = 0; b < CUBES; b++) run->model.bodies[b].mass = masses[b];
+  return energy;
+}
+
 static void expect_near(double value, double expected) {
   ck_assert_near(value, expected, 1e-9 * expected);
 }
@@ -20,8 +32,7 @@ static void expect_near(double value, double expected) {
 START_TEST(a_body_strikes_with_what_it_falls) {
   SceneRun run;
   scene_open(&run, "cubes", NULL);
-  for (int b = 0; b < CUBES; b++)
-    expect_near(fem_blow_energy(&run.model, b), (b < 9 ? 1 : 10) * G * (0.01 + 0.11 * b));
+  for (int b = 0; b < CUBES; b++) expect_near(energy_of(&run, b), (b < 9 ? 1 : 10) * G * (0.01 + 0.11 * b));
   expect_near(fem_blow_hardest(&run.model), 10 * G);
   scene_close(&run);
 }
@@ -30,8 +41,8 @@ END_TEST
 START_TEST(it_falls_no_farther_than_until_the_end) {
   SceneRun run;
   scene_open(&run, "cubes", (const char *const[]){"time.end=0.1", NULL});
-  expect_near(fem_blow_energy(&run.model, 0), G * 0.01);
-  expect_near(fem_blow_energy(&run.model, 9), 10 * G * 0.5 * G * 0.01);
+  expect_near(energy_of(&run, 0), G * 0.01);
+  expect_near(energy_of(&run, 9), 10 * G * 0.5 * G * 0.01);
   scene_close(&run);
 }
 END_TEST
@@ -39,7 +50,7 @@ END_TEST
 START_TEST(without_gravity_and_speed_nothing_strikes) {
   SceneRun run;
   scene_open(&run, "cubes", (const char *const[]){"effects.gravity=[0, 0, 0]", NULL});
-  for (int b = 0; b < CUBES; b++) ck_assert(fem_blow_energy(&run.model, b) == 0);
+  ck_assert(fem_blow_hardest(&run.model) == 0);
   scene_close(&run);
 }
 END_TEST

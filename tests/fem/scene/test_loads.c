@@ -9,6 +9,7 @@
 #include "base/vec3.h"
 #include "fem/model/build.h"
 #include "fem/scene/load.h"
+#include "scene_text.h"
 
 static const double SIZE[3] = {2, 1, 0.5};
 
@@ -153,7 +154,7 @@ static Status read_box(SceneRun *run, const char *about_body, const char *about_
            "%s",
            about_scene, about_body);
   *run = (SceneRun){0};
-  return app_scene_read_text("box.yaml", text, strlen(text), &run->scene);
+  return scene_text_read("box.yaml", text, strlen(text), &run->scene);
 }
 
 static void run_box(SceneRun *run, const char *about_body, const char *about_scene) {

@@ -308,7 +308,7 @@ static void refuse(const char *about_body, const char *about_scene, const char *
            "    mesh: {box: {size: [0.1, 0.1, 0.1], cells: 1}}\n"
            "    material: {young: 1e5, poisson: 0.3, density: 1000}\n%s",
            about_scene, about_body);
-  ck_assert_int_eq(app_scene_read_text("test.yaml", text, strlen(text), &scene), STATUS_INPUT);
+  ck_assert_int_eq(scene_text_read("test.yaml", text, strlen(text), &scene), STATUS_INPUT);
   ck_assert_msg(strstr(status_message(), expected), "expected '%s' in: %s", expected, status_message());
 }
 

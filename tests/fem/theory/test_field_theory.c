@@ -10,12 +10,13 @@
 #include "fem/model/build.h"
 #include "medit.h"
 #include "scene.h"
+#include "scene_text.h"
 
 static const double TRACTION = 1000;
 
 static void open_text(SceneRun *run, const char *text) {
   *run = (SceneRun){.status = STATUS_OK};
-  ck_assert_ok(app_scene_read_text("field.yaml", text, strlen(text), &run->scene));
+  ck_assert_ok(scene_text_read("field.yaml", text, strlen(text), &run->scene));
   ck_assert_ok(fem_model_create(&run->model, &run->scene));
 }
 

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "fem/model/build.h"
 #include "scene.h"
+#include "scene_text.h"
 
 static const double E = 1e6, NU = 0.3, WIDTH = 0.05; // of the ground; radius of both contacts [m]
 
@@ -43,7 +44,7 @@ static double press(double scale, const char *obstacle, double stiffness, double
            "output: {frames: 1}\n",
            mesh, E, NU, obstacle, stiffness);
   SceneRun run = {0};
-  ck_assert_ok(app_scene_read_text("indentation.yaml", text, strlen(text), &run.scene));
+  ck_assert_ok(scene_text_read("indentation.yaml", text, strlen(text), &run.scene));
   ck_assert_ok(fem_model_create(&run.model, &run.scene));
   scene_run_from(&run, NULL);
   ck_assert_msg(run.status == STATUS_OK, "%s", status_message());

@@ -138,7 +138,7 @@ START_TEST(a_torque_on_a_line_is_refused_with_its_place) {
                              "    loads: [{box: {min: [0, 0, 0], max: [4, 0, 0]}, torque: [1, 0, 0]}]\n";
   FemSceneDef scene;
   FemModel model;
-  ck_assert_ok(app_scene_read_text("line.yaml", text, strlen(text), &scene));
+  ck_assert_ok(scene_text_read("line.yaml", text, strlen(text), &scene));
   ck_assert_int_eq(fem_model_create(&model, &scene), STATUS_INPUT);
   ck_assert_ptr_nonnull(strstr(status_message(), "line.yaml:6:13: body 'shaft', loads[0]"));
   ck_assert_ptr_nonnull(strstr(status_message(), "9 vertices on a line"));

@@ -7,7 +7,6 @@ START_TEST(free_fall_is_exact_but_for_the_first_steps) {
   toy_open(&toy);
   double u = 3, v = 4;
   FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def_of(1e-7, 2), &u, &v);
-  ck_assert_near(fem_integrator_acceleration(integrator)[0], -9.81, 1e-14);
   finish(integrator, 2, 1, &u, &v);
   ck_assert_near(u, 3 + 4 * 2 - 0.5 * 9.81 * 4, 5e-7);
   ck_assert_near(v, 4 - 9.81 * 2, 1e-9);
@@ -89,7 +88,7 @@ START_TEST(an_oscillator_never_gains_energy) {
   while (time < 10) {
     const double *u_now, *v_now;
     ck_assert_ok(fem_integrator_step(integrator, &time));
-    fem_integrator_state(integrator, &time, &u_now, &v_now);
+    ck_assert_ok(fem_integrator_at(integrator, time, &u_now, &v_now));
     double now = 50 * u_now[0] * u_now[0] + 0.5 * v_now[0] * v_now[0];
     ck_assert_msg(now <= energy * (1 + 2e-5), "at t = %g the energy rose from %.9g to %.9g", time, energy,
                   now);
@@ -101,7 +100,6 @@ START_TEST(an_oscillator_never_gains_energy) {
 }
 END_TEST
 
-// m ẍ + d ẋ + k x = 0, x(0) = 1, ẋ(0) = 0, by every solver.
 // Steps of one length leave a rest to the end: two equal ones take it.
 START_TEST(no_step_to_the_end_is_short_because_little_is_left) {
   static const double LONGEST = 1e-2, LEFT[] = {1e-9, 1e-6, 1e-3, 5e-3, 9.99e-3};
@@ -125,6 +123,7 @@ START_TEST(no_step_to_the_end_is_short_because_little_is_left) {
 }
 END_TEST
 
+// m ẍ + d ẋ + k x = 0, x(0) = 1, ẋ(0) = 0, by every solver.
 START_TEST(a_damped_oscillator_decays_as_it_should) {
   double m = 2, k = 200, d = 4, end = 1.5;
   double decay = d / (2 * m), omega = sqrt(k / m - decay * decay);
@@ -174,7 +173,7 @@ END_TEST
 START_TEST(interpolation_meets_the_steps_and_keeps_to_the_last_one) {
   Toy toy = {.count = 1, .mass = 1, .wall_stiffness = 100};
   toy_open(&toy);
-  const double *u_at, *v_at, *u_now, *v_now;
+  const double *u_at, *v_at;
   double u = 1, v = 0, time = 0, before = 0, u_before = 1;
   FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def_of(1e-6, 1), &u, &v);
   ck_assert_ok(fem_integrator_at(integrator, 0, &u_at, &v_at));
@@ -182,9 +181,8 @@ START_TEST(interpolation_meets_the_steps_and_keeps_to_the_last_one) {
   while (time < 1) {
     ck_assert_ok(fem_integrator_step(integrator, &time));
     ck_assert_ok(fem_integrator_at(integrator, time, &u_at, &v_at));
-    fem_integrator_state(integrator, &time, &u_now, &v_now);
-    ck_assert(u_at[0] == u_now[0] && v_at[0] == v_now[0]);
-    u = u_now[0];
+    u = u_at[0];
+    ck_assert_near(u, cos(10 * time), 2e-3);
     ck_assert_ok(fem_integrator_at(integrator, 0.5 * (before + time), &u_at, &v_at));
     ck_assert_near(u_at[0], cos(5 * (before + time)), 2e-3);
     ck_assert_ok(fem_integrator_at(integrator, before, &u_at, &v_at));
@@ -204,18 +202,17 @@ START_TEST(a_restart_from_an_earlier_state_repeats_the_run) {
   double u = 1, v = 0, time = 0;
   FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def_of(1e-7, 1), &u, &v);
   while (time < 0.3) ck_assert_ok(fem_integrator_step(integrator, &time));
-  const double *u_now, *v_now;
-  double kept_time;
-  fem_integrator_state(integrator, &kept_time, &u_now, &v_now);
+  const double *u_now, *v_now, kept_time = time;
+  ck_assert_ok(fem_integrator_at(integrator, kept_time, &u_now, &v_now));
   double kept_u = u_now[0], kept_v = v_now[0];
   while (time < 0.7) ck_assert_ok(fem_integrator_step(integrator, &time));
   FemIntegratorStats before = fem_integrator_stats(integrator);
   ck_assert_ok(fem_integrator_restart(integrator, kept_time, &kept_u, &kept_v, 1e-5));
-  ck_assert_near(fem_integrator_acceleration(integrator)[0], -100 * kept_u, 1e-12);
   ck_assert_near(fem_integrator_stats(integrator).current_step, 1e-5, 0);
   ck_assert_ok(fem_integrator_step(integrator, &time));
   ck_assert_near(time, kept_time + 1e-5, 1e-14);
-  fem_integrator_state(integrator, &time, &u_now, &v_now);
+  ck_assert_ok(fem_integrator_at(integrator, time, &u_now, &v_now));
+  ck_assert_near(v_now[0], kept_v - 1e-5 * 100 * kept_u, 2e-7);            // h² |v̈| = 1e-10 · 1e3
   ck_assert_ok(fem_integrator_restart(integrator, time, u_now, v_now, 0)); // its own arrays
   finish(integrator, 1, 1, &u, &v);
   ck_assert_near(u, cos(10.0), 2e-4);
@@ -240,7 +237,7 @@ START_TEST(a_bouncing_ball_gains_no_energy) {
       const double *u_now, *v_now;
       double before = u;
       ck_assert_ok(fem_integrator_step(integrator, &time));
-      fem_integrator_state(integrator, &time, &u_now, &v_now);
+      ck_assert_ok(fem_integrator_at(integrator, time, &u_now, &v_now));
       u = u_now[0], v = v_now[0];
       double spring = 0.5 * stiffness * fmin(u, 0) * fmin(u, 0);
       highest_energy = suite_larger(highest_energy, 0.5 * v * v + 9.81 * u + spring);
