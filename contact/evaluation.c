@@ -21,7 +21,7 @@
 enum { PORTION_SIZE = 64, FEW_TO_SHARE = 2 * PORTION_SIZE };
 
 Status contact_evaluation_create(ContactEvaluation *evaluation, const ContactLayout *layout) {
-  *evaluation = (ContactEvaluation){0};
+  *evaluation = (ContactEvaluation){.blamed = -1};
   evaluation->positions = memory_zeroed((size_t)layout->mesh.position_count, 3 * sizeof(double));
   evaluation->forces = memory_zeroed((size_t)layout->def.vertex_count, 3 * sizeof(double));
   evaluation->covered = memory_zeroed((size_t)layout->def.tet_count, sizeof(double));
@@ -94,6 +94,7 @@ static double resting(const double *values, size_t place) {
 
 // Forgets the last result at a cost of its own size.
 static void clear(ContactEvaluation *evaluation) {
+  evaluation->blamed = -1;
   const ContactPatches *patches = &evaluation->patches;
   const ContactRest *rest = evaluation->rest;
   const double *forces = rest ? rest->forces : NULL, *covered = rest ? rest->covered : NULL;
@@ -237,7 +238,7 @@ static Status blame_volume(const ContactLayout *layout, const ContactPair *pair,
 
 // Of a batch that failed, whose first pair is `first`, finds the pair for which the model fails again. A
 // model that is no longer there, or was interrupted, is no pair's fault.
-static Status blame_failure(const ContactEvaluation *evaluation, const ContactLayout *layout,
+static Status blame_failure(ContactEvaluation *evaluation, const ContactLayout *layout,
                             const OverlapModel *model, const OverlapBatch *batch, int first, Status failure) {
   char why[1024];
   if (failure == STATUS_DEVICE || failure == STATUS_INTERRUPTED) return status_prefix(failure, "contact");
@@ -247,6 +248,7 @@ static Status blame_failure(const ContactEvaluation *evaluation, const ContactLa
     Status status = overlap_model_eval(model, &one);
     if (status) {
       snprintf(why, sizeof why, "%s", status_message());
+      evaluation->blamed = first + k;
       return blame(layout, &evaluation->pairs[first + k], status, why);
     }
   }
@@ -262,14 +264,23 @@ static void count_pair(ContactPairCounts *counts, unsigned flags) {
   counts->unsound += (flags & OVERLAP_UNSOUND) != 0;
 }
 
+// On all ranks the pair that one of them blames.
+static Status share_blame(ContactEvaluation *evaluation, Status status) {
+  double blamed = evaluation->blamed;
+  ranks()->most(&blamed, 1);
+  evaluation->blamed = (int)blamed;
+  return status;
+}
+
 // Each rank evaluates the model for an equal share of the batch, and all receive all results.
-static Status ask_model(const ContactEvaluation *evaluation, const ContactLayout *layout,
-                        const OverlapModel *model, const OverlapBatch *batch) {
+static Status ask_model(ContactEvaluation *evaluation, const ContactLayout *layout, const OverlapModel *model,
+                        const OverlapBatch *batch) {
   const int *begin = ranks_split(batch->pair_count), first = begin[ranks()->number];
   OverlapBatch own = overlap_ops_part(batch, first, begin[ranks()->number + 1] - first);
   Status status = own.pair_count > 0 ? overlap_model_eval(model, &own) : STATUS_OK;
   if (status) status = blame_failure(evaluation, layout, model, &own, first, status);
-  TRY(ranks()->worst(status));
+  status = ranks()->worst(status);
+  if (status) return share_blame(evaluation, status);
   ranks()->join(batch->volume, sizeof *batch->volume, begin);
   if (batch->gradient) ranks()->join(batch->gradient, 24 * sizeof *batch->gradient, begin);
   if (batch->centroid) ranks()->join(batch->centroid, 3 * sizeof *batch->centroid, begin);
@@ -317,8 +328,10 @@ static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout 
     TRY(ask_model(evaluation, layout, model, &batch));
   evaluation->counts.tried = count;
   for (int k = 0; k < count; k++) {
-    if (!(evaluation->volumes[k] >= 0 && evaluation->volumes[k] < INFINITY))
+    if (!(evaluation->volumes[k] >= 0 && evaluation->volumes[k] < INFINITY)) {
+      evaluation->blamed = k;
       return blame_volume(layout, &evaluation->pairs[k], evaluation->volumes[k]);
+    }
     count_pair(&evaluation->counts, evaluation->flags[k]);
   }
   return STATUS_OK;

@@ -42,6 +42,7 @@ typedef struct ContactEvaluation {
   const double *given_covered;  //                                  (given tet_count)
   ContactInterface *interfaces; //                                       (interface_count)
   ContactPairCounts counts;     // of the pairs given to the model
+  int blamed;                   // the pair of `coordinates` that the model failed at; −1: none
   double overlap_s, force_s;    // wall time [s]
   // ∂V/∂x [m²] and ∂x̄/∂x by the coordinates, where they were asked for           (mesh_pair_count, 4, 24)
   double *slopes;

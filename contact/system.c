@@ -535,6 +535,11 @@ const ContactCounters *contact_system_counters(const ContactSystem *system) {
   return &system->counters;
 }
 
+const double *contact_system_blamed(const ContactSystem *system) {
+  const ContactEvaluation *evaluation = &system->evaluation;
+  return evaluation->blamed < 0 ? NULL : evaluation->coordinates + 24 * (size_t)evaluation->blamed;
+}
+
 size_t contact_system_bytes(const ContactSystem *system) {
   size_t sum = memory_held(system) + memory_held(system->positions) + memory_held(system->velocities) +
                memory_held(system->given_forces) + memory_held(system->given_covered) +

@@ -154,6 +154,8 @@ Status contact_system_near_pairs(ContactSystem *system, double time, const doubl
 // The number that the definition gives an element of the contact mesh (`origin`, contact/surface/stars.h).
 int contact_system_origin(const ContactSystem *system, int tet);
 const ContactCounters *contact_system_counters(const ContactSystem *system);
+// The pair (2, 4, 3) [m] that the overlap model failed at in the last evaluation; NULL: it did not.
+const double *contact_system_blamed(const ContactSystem *system);
 // What it holds on the heap [bytes], the overlap model left out.
 size_t contact_system_bytes(const ContactSystem *system);
 // The bodies, interfaces and cells; the system's.

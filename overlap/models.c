@@ -17,6 +17,7 @@
 #include "overlap/wrap/kinds.h"
 #include "overlap/wrap/mixture/doubt.h"
 #include "overlap/wrap/mixture/fade.h"
+#include "overlap/wrap/sound.h"
 
 // In those programs that link it; the library that others embed (overlap/api) does not.
 extern const OverlapOps overlap_cgal_ops __attribute__((weak));
@@ -60,8 +61,12 @@ static Status find_by_file(const char *path, const OverlapOps **ops) {
   return STATUS_OK;
 }
 
-static Status create_foreign(OverlapModel *model, const char *word) {
-  TRY(overlap_foreign_create(&model->self, &model->ops, word));
+static OverlapUnsound unsound_of(const OverlapOptions *options) {
+  return options ? options->unsound : OVERLAP_UNSOUND_AUTO;
+}
+
+static Status create_foreign(OverlapModel *model, const char *word, const OverlapOptions *options) {
+  TRY(overlap_foreign_create(&model->self, &model->ops, word, unsound_of(options)));
   return overlap_model_has_ghosts(model) ? overlap_wrap_create(model, &overlap_wrap_cut, NAN, word)
                                          : STATUS_OK;
 }
@@ -116,6 +121,14 @@ static Status fail_around(const char *inner) {
                      is_hybrid ? "" : "hybrid=", is_hybrid ? behind : overlap_source_model(behind));
 }
 
+static Status create_inner(OverlapModel *model, const OverlapWrapKind *kind, const char *inner,
+                           const OverlapOptions *given) {
+  OverlapOptions options = given ? *given : overlap_options_default();
+  if (kind == &overlap_wrap_strict) options.unsound = OVERLAP_UNSOUND_FATAL;
+  if (kind == &overlap_wrap_lenient) options.unsound = OVERLAP_UNSOUND_COUNT;
+  return overlap_models_create_with(model, inner, NULL, &options);
+}
+
 // A word with something before its model: a wrapper, or what a network is used as.
 static Status create_round(OverlapModel *model, const char *word, const char *inner,
                            const OverlapOptions *options) {
@@ -130,9 +143,9 @@ static Status create_round(OverlapModel *model, const char *word, const char *in
   if (kind == &overlap_wrap_doubt && !is_foreign && is_bare)
     return create_hybrid(model, number, inner, options);
   if (kind == &overlap_wrap_keep && is_foreign && is_bare)
-    TRY(overlap_foreign_create(&model->self, &model->ops, inner));
+    TRY(overlap_foreign_create(&model->self, &model->ops, inner, unsound_of(options)));
   else
-    TRY(overlap_models_create_with(model, inner, NULL, options));
+    TRY(create_inner(model, kind, inner, options));
   if (kind == &overlap_wrap_doubt && !is_foreign) {
     overlap_model_destroy(model);
     return fail_around(inner);
@@ -150,7 +163,7 @@ Status overlap_models_create_with(OverlapModel *model, const char *word, const c
     return status_fail(STATUS_INPUT, "%s: weights stand in the word, in place of the model: %.*s%s", word,
                        (int)(inner - word), word, weights);
   if (inner) return create_round(model, word, inner, options);
-  if (overlap_source_is_foreign(word)) return create_foreign(model, word);
+  if (overlap_source_is_foreign(word)) return create_foreign(model, word, options);
   const OverlapOps *ops = find_named(word, strlen(word));
   if (!ops && overlap_weights_is_path(word)) {
     TRY(find_by_file(word, &ops));

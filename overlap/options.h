@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene may ask of the models that are a TetrahedronPairNet (tpn/network.h). AUTO: the model's own.
+// What may be asked of models as they are made. AUTO: the model's own.
 #ifndef TETLAP_OVERLAP_OPTIONS_H
 #define TETLAP_OVERLAP_OPTIONS_H
 
@@ -37,12 +37,20 @@ typedef enum OverlapCoplanar {
   OVERLAP_COPLANAR_CLIP, // turn to clipping, the more the nearer
 } OverlapCoplanar;
 
+// Volumes that no two tetrahedra share: not finite, below 0, above the smaller one.
+typedef enum OverlapUnsound {
+  OVERLAP_UNSOUND_AUTO,  // those that are not finite are errors, the others flagged
+  OVERLAP_UNSOUND_COUNT, // all are flagged; one that is not finite is 0
+  OVERLAP_UNSOUND_FATAL, // all are errors
+} OverlapUnsound;
+
 typedef struct OverlapOptions {
   OverlapGhosts ghosts;
   OverlapGate gate;
   OverlapOrders orders;
   OverlapBeyond beyond;
   OverlapCoplanar coplanar;
+  OverlapUnsound unsound;
   double touch;      // fading and `hybrid`: overlap share at which the network begins to count
   double deep;       // hybrid: overlap share beyond which it no longer does
   double doubt;      // hybrid of a geo: V's relative error that a bound may reach before clipping begins

@@ -20,6 +20,7 @@
 #include "fem/run/rest/hold.h"
 #include "fem/run/result/run_clock.h"
 #include "fem/run/result/spread.h"
+#include "fem/run/run_blame.h"
 #include "fem/run/run_frames.h"
 #include "fem/run/run_load.h"
 #include "fem/run/run_loop.h"
@@ -389,8 +390,11 @@ Status fem_run_loop_explain(const FemRunState *run, Status status) {
   if (status == STATUS_INTERRUPTED) TRY(fem_run_watch_stop(run));
   if (status != STATUS_RETRY && status != STATUS_SOLVER) return status;
   bool is_told = strstr(status_message(), "t = ");
-  if (is_told) return status_fail(STATUS_SOLVER, "%s", status_message());
-  return status_prefix(STATUS_SOLVER, "at t = %.9g s", run->time);
+  if (is_told)
+    status_fail(STATUS_SOLVER, "%s", status_message());
+  else
+    status_prefix(STATUS_SOLVER, "at t = %.9g s", run->time);
+  return fem_run_blame_pair(run, STATUS_SOLVER);
 }
 
 Status fem_run_loop_end(FemRunState *run, Status status) {

@@ -16,6 +16,7 @@
 typedef struct Foreign {
   OverlapOps ops;
   char name[128];
+  OverlapUnsound unsound;
   OverlapForeignPort port;
   pthread_mutex_t lock; // of the request, and of the port
   OverlapForeignRequest request;
@@ -79,9 +80,9 @@ static void tell_origins(Foreign *foreign, const OverlapOrigins *origins) {
   memcpy(request->bodies, origins->bodies, count * sizeof *origins->bodies);
 }
 
-static bool are_finite(int count, const double *numbers) {
+static bool are_finite(size_t count, const double *numbers) {
   double sum = 0; // x − x is 0 for finite x, else NaN
-  for (int i = 0; i < count; i++) sum += numbers[i] - numbers[i];
+  for (size_t i = 0; i < count; i++) sum += numbers[i] - numbers[i];
   return sum == 0;
 }
 
@@ -98,41 +99,69 @@ static Status check_doubt(const Foreign *foreign, double doubt, int i) {
                            foreign->name, i, doubt);
 }
 
-static Status give_doubt(const Foreign *foreign, const OverlapBatch *batch, size_t at, int i) {
-  batch->doubt[at] = foreign->request.arrays[OVERLAP_FOREIGN_DOUBT][at];
-  return check_doubt(foreign, batch->doubt[at], i);
+static int number_of(const OverlapBatch *batch, size_t at) {
+  return batch->numbers ? batch->numbers[at] : (int)at;
+}
+
+// What of its answer is no finite number, of what counts; NULL: nothing.
+static const char *find_not_finite(const Foreign *foreign, const OverlapBatch *batch, size_t at) {
+  double *const *arrays = foreign->request.arrays;
+  const double volume = arrays[OVERLAP_FOREIGN_VOLUME][at];
+  if (!isfinite(volume)) return "its volume";
+  if (!(volume > 0)) return NULL;
+  if (batch->gradient && !are_finite(24, arrays[OVERLAP_FOREIGN_GRADIENT] + 24 * at))
+    return "a gradient of it";
+  return batch->centroid && !are_finite(3, arrays[OVERLAP_FOREIGN_CENTROID] + 3 * at) ? "its centroid" : NULL;
+}
+
+// A pair whose answer has something that is not finite.
+static Status give_not_finite(const Foreign *foreign, const OverlapBatch *batch, size_t at,
+                              const char *what) {
+  unsigned flags;
+  OverlapAnswer answer = overlap_ops_answer(batch, (int)at, &flags);
+  if (foreign->unsound != OVERLAP_UNSOUND_COUNT) return fail_not_finite(foreign, number_of(batch, at), what);
+  overlap_ops_write_nothing(&answer);
+  *answer.flags = OVERLAP_UNSOUND;
+  if (batch->doubt) batch->doubt[at] = INFINITY;
+  return STATUS_OK;
+}
+
+static Status give_unsound(const Foreign *foreign, double volume, double smaller, int i, unsigned *flags) {
+  if (foreign->unsound == OVERLAP_UNSOUND_FATAL)
+    return status_fail(STATUS_SOLVER,
+                       "overlap model '%s': pair %d: its volume is %g m³, expected 0 to that of the smaller "
+                       "tetrahedron, %g m³",
+                       foreign->name, i, volume, smaller);
+  *flags = OVERLAP_UNSOUND;
+  return STATUS_OK;
 }
 
 // The model's answer for one pair, into the batch.
 static Status give(const Foreign *foreign, const OverlapBatch *batch, size_t at) {
-  const int i = batch->numbers ? batch->numbers[at] : (int)at;
   unsigned flags = 0;
   OverlapAnswer answer = overlap_ops_answer(batch, (int)at, &flags);
   double *const *arrays = foreign->request.arrays;
+  const char *wrong = find_not_finite(foreign, batch, at);
+  if (wrong) return give_not_finite(foreign, batch, at, wrong);
+  if (batch->doubt) {
+    batch->doubt[at] = arrays[OVERLAP_FOREIGN_DOUBT][at];
+    TRY(check_doubt(foreign, batch->doubt[at], number_of(batch, at)));
+  }
   const double volume = arrays[OVERLAP_FOREIGN_VOLUME][at];
-  if (!isfinite(volume)) return fail_not_finite(foreign, i, "its volume");
-  if (batch->doubt) TRY(give_doubt(foreign, batch, at, i));
-  *answer.flags = volume < 0 ? OVERLAP_UNSOUND : 0;
-  if (volume == 0 && asks_for_all(foreign))
-    *answer.flags =
-        overlap_sizes_smaller(batch->pairs + OVERLAP_PAIR_SIZE * at) > 0 ? OVERLAP_DISJOINT : OVERLAP_FLAT;
+  const bool is_none = volume == 0 && !asks_for_all(foreign);
+  const double smaller = is_none ? 0 : overlap_sizes_smaller(batch->pairs + OVERLAP_PAIR_SIZE * at);
+  *answer.flags = 0;
+  if (volume == 0 && asks_for_all(foreign)) *answer.flags = smaller > 0 ? OVERLAP_DISJOINT : OVERLAP_FLAT;
+  if (volume < 0 || volume > smaller * (1 + 1e-9))
+    TRY(give_unsound(foreign, volume, smaller, number_of(batch, at), answer.flags));
   if (!(volume > 0)) {
     overlap_ops_write_nothing(&answer);
     return STATUS_OK;
   }
-  if (volume > overlap_sizes_smaller(batch->pairs + OVERLAP_PAIR_SIZE * at) * (1 + 1e-9))
-    *answer.flags = OVERLAP_UNSOUND;
   *answer.volume = volume;
-  if (answer.gradient) {
-    if (!are_finite(24, arrays[OVERLAP_FOREIGN_GRADIENT] + 24 * at))
-      return fail_not_finite(foreign, i, "a gradient of it");
+  if (answer.gradient)
     memcpy(answer.gradient, arrays[OVERLAP_FOREIGN_GRADIENT] + 24 * at, 24 * sizeof(double));
-  }
-  if (answer.centroid) {
-    if (!are_finite(3, arrays[OVERLAP_FOREIGN_CENTROID] + 3 * at))
-      return fail_not_finite(foreign, i, "its centroid");
-    memcpy(answer.centroid, arrays[OVERLAP_FOREIGN_CENTROID] + 3 * at, 3 * sizeof(double));
-  }
+  if (answer.centroid) memcpy(answer.centroid, arrays[OVERLAP_FOREIGN_CENTROID] + 3 * at, 3 * sizeof(double));
   return STATUS_OK;
 }
 
@@ -150,10 +179,11 @@ static Status eval_hessian(Foreign *foreign, const OverlapBatch *batch) {
     TRY(overlap_foreign_request_pull(request, &foreign->port, foreign->name, BY_GRADIENT));
     for (size_t k = 0; k < request->count; k++) {
       const double *row = request->arrays[OVERLAP_FOREIGN_SLOPE] + SIZE * k;
-      if (!are_finite(SIZE, row))
-        return fail_not_finite(foreign, batch->numbers ? batch->numbers[k] : (int)k,
-                               "a second derivative of it");
-      if (batch->volume[k] > 0) memcpy(batch->hessian + SIZE * SIZE * k + SIZE * r, row, SIZE * sizeof *row);
+      if (!(batch->volume[k] > 0)) continue;
+      if (are_finite(SIZE, row))
+        memcpy(batch->hessian + SIZE * SIZE * k + SIZE * r, row, SIZE * sizeof *row);
+      else
+        TRY(give_not_finite(foreign, batch, k, "a second derivative of it"));
     }
   }
   return STATUS_OK;
@@ -283,11 +313,12 @@ static Status open_port(OverlapForeignPort *port, const char *word) {
   return status_fail(STATUS_INPUT, "%s: names no model of yours", word);
 }
 
-Status overlap_foreign_create(void **self, const OverlapOps **ops, const char *word) {
+Status overlap_foreign_create(void **self, const OverlapOps **ops, const char *word, OverlapUnsound unsound) {
   Foreign *foreign = memory_zeroed(1, sizeof *foreign);
   if (!foreign) return status_no_memory("a model of yours");
   pthread_mutex_init(&foreign->lock, NULL);
   snprintf(foreign->name, sizeof foreign->name, "%s", word);
+  foreign->unsound = unsound;
   foreign->ops = standard;
   foreign->ops.name = foreign->name;
   Status status = open_port(&foreign->port, word);

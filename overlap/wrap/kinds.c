@@ -12,10 +12,12 @@
 #include "overlap/wrap/mixture/doubt.h"
 #include "overlap/wrap/mixture/fade.h"
 #include "overlap/wrap/placed.h"
+#include "overlap/wrap/sound.h"
 
 static const OverlapWrapKind *const kinds[] = {
-    &overlap_wrap_cut,      &overlap_wrap_keep,  &overlap_wrap_fade,   &overlap_wrap_both,
-    &overlap_wrap_coplanar, &overlap_wrap_doubt, &overlap_wrap_placed, &overlap_wrap_derived,
+    &overlap_wrap_cut,      &overlap_wrap_keep,    &overlap_wrap_fade,   &overlap_wrap_both,
+    &overlap_wrap_coplanar, &overlap_wrap_doubt,   &overlap_wrap_placed, &overlap_wrap_derived,
+    &overlap_wrap_strict,   &overlap_wrap_lenient,
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
