@@ -17,7 +17,7 @@ static size_t values_of(const FemTangent *tangent) {
 
 Status fem_change_create(FemChange *change, const FemTangent *tangent) {
   size_t values = values_of(tangent);
-  *change = (FemChange){.party = -1, .placed = -1};
+  *change = (FemChange){.party = -1, .placed = -1, .has_energies = true};
   change->force = memory_zeroed(values, sizeof(double));
   change->motion = memory_zeroed(values, sizeof(double));
   change->speed = memory_zeroed(values, sizeof(double));
@@ -282,12 +282,16 @@ static Status rate_choice(FemChange *change, FemVaried *varied, const FemTangent
   return status;
 }
 
+static double *elastic_of(FemChange *change) {
+  return change->has_energies ? &change->elastic : NULL;
+}
+
 static Status change_material(FemChange *change, FemVaried *varied, const FemTangent *tangent,
                               const FemParameter *parameter, bool follows) {
   FemParameterKind constant = parameter->kind;
   bool is_elastic = constant == FEM_PARAMETER_YOUNG || constant == FEM_PARAMETER_POISSON;
   TRY(fem_varied_derive(varied, parameter->part, constant, parameter->row, tangent->state, change->force,
-                        &change->elastic));
+                        elastic_of(change)));
   if (!follows || !is_elastic || !tangent->contact) return STATUS_OK;
   return rate_choice(change, varied, tangent, parameter->part, constant);
 }
@@ -298,7 +302,7 @@ static Status damp(FemChange *change, FemVaried *varied, const FemTangent *tange
   for (int p = 0; p < model->part_count; p++)
     if (model->parts[p].material.damping < 0)
       TRY(fem_varied_derive(varied, p, FEM_PARAMETER_DAMPING, 0, tangent->state, change->force,
-                            &change->elastic));
+                            elastic_of(change)));
   return STATUS_OK;
 }
 

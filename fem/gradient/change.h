@@ -23,6 +23,7 @@ typedef struct FemChange {
   double shift[3], spin[3];
   int placed;                // the body that stands elsewhere; −1: none
   double rest[3];            // by how much
+  bool has_energies;         // whether the elastic energy is wanted
   double elastic, gravity;   // energies
   double *product, *contact; // scratch                                    (vertex_count, 3)
 } FemChange;

@@ -13,4 +13,7 @@ typedef struct FemDifferencePoint {
 static const FemDifferencePoint fem_difference[FEM_DIFFERENCE_POINTS] = {
     {-3, -1.0 / 60}, {-2, 3.0 / 20}, {-1, -3.0 / 4}, {1, 3.0 / 4}, {2, -3.0 / 20}, {3, 1.0 / 60}};
 
+// Exact of what is linear in p.
+static const FemDifferencePoint fem_difference_linear[2] = {{-1, -0.5}, {1, 0.5}};
+
 #endif

@@ -258,7 +258,8 @@ static Status find(FemGradient *gradient, Adjoint *adjoint) {
   double largest = fem_equilibrium_largest(system->forces, 3 * system->model->vertex_count);
   gradient->unbalanced = worse(gradient->unbalanced, largest > 0 ? left / largest : 0);
   TRY(fem_equilibrium_factorise(equilibrium, time, adjoint->u, 0));
-  TRY(fem_tangent_create(&adjoint->tangent, system, &adjoint->state));
+  TRY(fem_tangent_create(&adjoint->tangent, system));
+  TRY(fem_tangent_find(&adjoint->tangent, &adjoint->state));
   TRY(fem_change_create(&adjoint->change, &adjoint->tangent));
   TRY(create_krylov(adjoint));
   TRY(solve_goals(adjoint, gradient));

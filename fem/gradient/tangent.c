@@ -9,16 +9,6 @@
 #include "fem/effect/contact/contact.h"
 #include "fem/element/quadratic_face.h"
 
-// As if nothing moved, where damping has no stiffness.
-static Status assemble(FemTangent *tangent, size_t count) {
-  FemState still = *tangent->state;
-  still.velocities = memory_zeroed(count, sizeof *still.velocities);
-  if (!still.velocities) return status_no_memory("the stiffness of all coordinates");
-  Status status = fem_system_assemble(tangent->system, &still, 1, 0, 0, &tangent->stiffness);
-  memory_free(still.velocities);
-  return status;
-}
-
 static Status find_learned(FemTangent *tangent) {
   const ContactEvaluation *evaluation;
   if (!fem_learned_is_there(tangent->system->model)) return STATUS_OK;
@@ -26,28 +16,59 @@ static Status find_learned(FemTangent *tangent) {
   return fem_learned_find(&tangent->learned, tangent->contact, evaluation);
 }
 
-Status fem_tangent_create(FemTangent *tangent, FemSystem *system, const FemState *state) {
-  *tangent = (FemTangent){.system = system, .state = state};
-  int count = 3 * system->model->vertex_count;
+Status fem_tangent_create(FemTangent *tangent, FemSystem *system) {
+  *tangent = (FemTangent){.system = system};
+  size_t count = 3 * (size_t)system->model->vertex_count;
   void *contact = fem_system_effect(system, &fem_effect_contact);
   tangent->stick = fem_system_effect(system, &fem_effect_stick);
   if (contact) {
     tangent->contact = fem_effect_contact_system(contact);
     tangent->interface_count = contact_system_layout(tangent->contact)->interface_count;
   }
-  tangent->every_dof = memory_zeroed((size_t)count, sizeof *tangent->every_dof);
-  if (!tangent->every_dof) return status_no_memory("the stiffness of all coordinates");
-  for (int dof = 0; dof < count; dof++) tangent->every_dof[dof] = dof;
-  TRY(fem_matrix_create(&tangent->stiffness, system->pattern, tangent->every_dof));
-  TRY(assemble(tangent, (size_t)count));
-  return find_learned(tangent);
+  tangent->every_dof = memory_zeroed(count, sizeof *tangent->every_dof);
+  tangent->still = memory_zeroed(count, sizeof *tangent->still);
+  if (!tangent->every_dof || !tangent->still) return status_no_memory("the stiffness of all coordinates");
+  for (size_t dof = 0; dof < count; dof++) tangent->every_dof[dof] = (int)dof;
+  return STATUS_OK;
 }
 
 void fem_tangent_destroy(FemTangent *tangent) {
   fem_matrix_destroy(&tangent->stiffness);
   fem_learned_destroy(&tangent->learned);
   memory_free(tangent->every_dof);
+  memory_free(tangent->still);
   *tangent = (FemTangent){0};
+}
+
+static Status lay_out(FemTangent *tangent) {
+  FemSystem *system = tangent->system;
+  TRY(fem_system_couple(system, tangent->state));
+  if (tangent->layout == system->pattern_version) return STATUS_OK;
+  fem_matrix_destroy(&tangent->stiffness);
+  TRY(fem_matrix_create(&tangent->stiffness, system->pattern, tangent->every_dof));
+  tangent->layout = system->pattern_version;
+  return STATUS_OK;
+}
+
+static void take_outer(void *self, int count, const int *vertices, const double *w, double scale) {
+  fem_matrix_add_outer(self, count, vertices, w, -scale);
+}
+
+static void take_dense(void *self, int count, const int *vertices, const double *matrix) {
+  fem_matrix_add(self, count, vertices, matrix, -1);
+}
+
+// As if nothing moved, where damping has no stiffness.
+Status fem_tangent_find(FemTangent *tangent, const FemState *state) {
+  FemState still = *state;
+  tangent->state = state;
+  still.velocities = tangent->still;
+  TRY(lay_out(tangent));
+  TRY(fem_system_assemble(tangent->system, &still, 1, 0, 0, &tangent->stiffness));
+  if (tangent->stick)
+    TRY(fem_effect_stick_add_stiffness(tangent->stick, state,
+                                       &(ContactStiffnessSink){&tangent->stiffness, take_outer, take_dense}));
+  return find_learned(tangent);
 }
 
 // A matrix that is never formed: y += share S x.
@@ -157,10 +178,7 @@ Status fem_tangent_pull(const FemTangent *tangent, const double *x, double *y) {
   fem_matrix_multiply(&tangent->stiffness, x, y);
   TRY(turn_pressures(tangent, x, y));
   fem_learned_add_product(&tangent->learned, true, x, y);
-  if (!tangent->stick) return STATUS_OK;
-  Product product = {x, y, -1, false};
-  return fem_effect_stick_add_stiffness(tangent->stick, tangent->state,
-                                        &(ContactStiffnessSink){&product, add_outer, add_dense});
+  return STATUS_OK;
 }
 
 void fem_tangent_add_learned(const FemTangent *tangent, const double *x, double *y) {

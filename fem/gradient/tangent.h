@@ -13,9 +13,11 @@
 typedef struct FemTangent {
   FemSystem *system;      // borrowed
   const FemState *state;  // borrowed
-  FemMatrix stiffness;    // K = −∂f/∂x at rest over all coordinates
+  FemMatrix stiffness;    // K = −∂f/∂x at rest over all coordinates, without friction
+  long long layout;       // of the system's pattern, of which that is; 0: of none
   FemLearned learned;     // what that lacks of contact
   int *every_dof;         // 0, 1, 2 …                                    (3·vertex_count)
+  double *still;          // velocities, 0                                (3·vertex_count)
   ContactSystem *contact; // borrowed; NULL: the scene has none
   int interface_count;
   void *stick;           // friction's effect, borrowed; NULL: the scene has none
@@ -24,10 +26,11 @@ typedef struct FemTangent {
   FemAnswers *answers;   // the same by overlaps
 } FemTangent;
 
-// At a state at which the system's pattern has been laid out (fem_system_couple). Destroy it also after a
-// failure.
-Status fem_tangent_create(FemTangent *tangent, FemSystem *system, const FemState *state);
-void fem_tangent_destroy(FemTangent *tangent);
+// Of no state yet. Destroy it also after a failure.
+Status fem_tangent_create(FemTangent *tangent, FemSystem *system);
+void fem_tangent_destroy(FemTangent *tangent); // also of a zeroed one
+// At a state, which is borrowed.
+Status fem_tangent_find(FemTangent *tangent, const FemState *state);
 
 // y = −(∂f/∂x)ᵀ x, both (vertex_count, 3), but for the parts of friction and damping. K is symmetric but for
 // following pressures and overlap models that do not clip. The parts of a mesh obstacle's vertices lack

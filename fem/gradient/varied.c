@@ -113,7 +113,7 @@ static double step_of(const FemModelPart *part, FemParameterKind constant, int p
   }
 }
 
-// Adds `weight` times the forces of materials and the elastic energy.
+// Adds `weight` times the forces of materials and, unless it is NULL, the elastic energy.
 static Status add_material(FemVaried *varied, const FemState *state, double weight, double *force,
                            double *energy) {
   const FemEffect *effects[] = {&varied->elasticity, &varied->volume, &varied->damping};
@@ -123,10 +123,10 @@ static Status add_material(FemVaried *varied, const FemState *state, double weig
   for (int i = 0; i < 3; i++) {
     if (!effects[i]->self) continue;
     TRY(effects[i]->ops->add_force(effects[i]->self, state, varied->force));
-    TRY(effects[i]->ops->add_energy(effects[i]->self, state, &sum));
+    if (energy) TRY(effects[i]->ops->add_energy(effects[i]->self, state, &sum));
   }
   for (size_t i = 0; i < count; i++) force[i] += weight * varied->force[i];
-  *energy += weight * sum.elastic;
+  if (energy) *energy += weight * sum.elastic;
   return STATUS_OK;
 }
 
@@ -136,10 +136,12 @@ Status fem_varied_derive(FemVaried *varied, int part, FemParameterKind constant,
   const FemModelPart kept = *own;
   double ratio = fem_model_largest_ratio(&varied->model.bodies[own->body]);
   double step = step_of(&kept, constant, place);
+  bool is_linear = constant != FEM_PARAMETER_OGDEN_EXPONENT && constant != FEM_PARAMETER_FIBRE_DIRECTION;
+  const FemDifferencePoint *points = is_linear ? fem_difference_linear : fem_difference;
   Status status = STATUS_OK;
-  for (int k = 0; k < FEM_DIFFERENCE_POINTS && !status; k++) {
-    vary(own, &kept, ratio, constant, place, fem_difference[k].place * step);
-    status = add_material(varied, state, fem_difference[k].weight / step, force, energy);
+  for (int k = 0; k < (is_linear ? 2 : FEM_DIFFERENCE_POINTS) && !status; k++) {
+    vary(own, &kept, ratio, constant, place, points[k].place * step);
+    status = add_material(varied, state, points[k].weight / step, force, energy);
   }
   *own = kept;
   return status;

@@ -24,8 +24,9 @@ typedef struct FemVaried {
 Status fem_varied_create(FemVaried *varied, const FemModel *model);
 void fem_varied_destroy(FemVaried *varied); // also of a zeroed one
 
-// Adds the derivatives of elastic and damping forces [N] and of the elastic energy [J] at a state by a
-// constant of the material of a part (fem_parameter_is_of_material); `place`: which of ogden's three.
+// Adds the derivatives of elastic and damping forces [N] and, unless it is NULL, of the elastic energy [J] at
+// a state by a constant of the material of a part (fem_parameter_is_of_material); `place`: which of ogden's
+// three.
 Status fem_varied_derive(FemVaried *varied, int part, FemParameterKind constant, int place,
                          const FemState *state, double *force, double *energy);
 

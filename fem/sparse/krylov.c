@@ -92,6 +92,7 @@ Status fem_krylov_solve(FemKrylov *krylov, const double *b, double tolerance, do
   double whole = length_of(krylov, b), estimate = 1;
   int count = 0;
   if (residual) *residual = 0;
+  krylov->directions = 0;
   memset(x, 0, (size_t)krylov->count * sizeof *x);
   if (whole == 0) return STATUS_OK;
   triangle.right[0] = whole;
@@ -100,6 +101,7 @@ Status fem_krylov_solve(FemKrylov *krylov, const double *b, double tolerance, do
     TRY(extend(krylov, &triangle, count));
     estimate = fabs(triangle.right[++count]) / whole;
   }
+  krylov->directions = count;
   TRY(combine(krylov, &triangle, count, x));
   if (residual) {
     TRY(krylov->multiply(krylov->self, x, krylov->image));

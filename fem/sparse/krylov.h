@@ -12,6 +12,7 @@ typedef struct FemKrylov {
   Status (*multiply)(void *self, const double *x, double *y);     // y = A x
   Status (*precondition)(void *self, const double *x, double *y); // y ≈ A⁻¹ x
   double *basis, *image; // owned                    (FEM_KRYLOV_MOST + 1, n), (n)
+  int directions;        // that the last solution took
 } FemKrylov;
 
 enum { FEM_KRYLOV_MOST = 80 };

@@ -11,7 +11,11 @@
 #include "fem/sparse/vector.h"
 
 // Of a system that GMRES solves, the share of the right side that may be left.
-static const double RESIDUAL = 1e-11;
+static const double RESIDUAL = 1e-14;
+// The same, of one that is solved with the factor of a later step.
+static const double KEPT = 1e-11;
+// A factor of a later step serves on until GMRES takes more directions: a new one costs about as much.
+enum { MOST_DIRECTIONS = 8 };
 
 // What a goal has behind a step that was gone back over.
 typedef struct Behind {
@@ -30,14 +34,16 @@ typedef struct Sweep {
   FemReplay replay;
   FemTangent tangent;
   FemVaried varied;
+  FemChange change;
   FemKrylov krylov;
   FemFriction scratch;
   FemDamping damping;              // scratch
   Behind *behind;                  // of each goal
   double *lambda, *weight, *slope; // scratch, and ∂g/∂x of each goal  (3 V), (3 V), (goal_count, 3 V)
-  double *right, *product;         // scratch                          (n)
+  double *right;                   // scratch                          (n)
   double *factors;                 // of the terms of all goals
-  int step;
+  int step, factorised;            // which, and of which step the factor is; 0: of none
+  bool is_spent;                   // that factor
 } Sweep;
 
 static size_t values_of(const Sweep *sweep) {
@@ -46,11 +52,6 @@ static size_t values_of(const Sweep *sweep) {
 
 static bool has_friction(const Sweep *sweep) {
   return sweep->replay.stick != NULL;
-}
-
-// Whether the matrix is J.
-static bool is_exact(const Sweep *sweep) {
-  return sweep->replay.is_near && !fem_learned_is_there(sweep->replay.system.model);
 }
 
 static bool is_damped(const Sweep *sweep) {
@@ -73,10 +74,11 @@ static void destroy(Sweep *sweep) {
   fem_friction_destroy(&sweep->scratch);
   fem_damping_destroy(&sweep->damping);
   fem_krylov_destroy(&sweep->krylov);
+  fem_change_destroy(&sweep->change);
+  fem_tangent_destroy(&sweep->tangent);
   fem_varied_destroy(&sweep->varied);
   fem_replay_destroy(&sweep->replay);
-  void *arrays[] = {sweep->behind, sweep->lambda,  sweep->weight, sweep->slope,
-                    sweep->right,  sweep->product, sweep->factors};
+  void *arrays[] = {sweep->behind, sweep->lambda, sweep->weight, sweep->slope, sweep->right, sweep->factors};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
 }
 
@@ -105,6 +107,8 @@ static Status create(Sweep *sweep, const FemModel *model, const FemGradientDef *
   *sweep = (Sweep){.def = def};
   TRY(fem_replay_create(&sweep->replay, model, steps));
   TRY(fem_varied_create(&sweep->varied, model));
+  TRY(fem_tangent_create(&sweep->tangent, &sweep->replay.system));
+  TRY(fem_change_create(&sweep->change, &sweep->tangent));
   size_t n = (size_t)sweep->replay.n, values = values_of(sweep);
   for (size_t g = 0; g < goals; g++) terms += (size_t)def->goals[g].term_count;
   sweep->behind = memory_zeroed(goals, sizeof *sweep->behind);
@@ -112,13 +116,10 @@ static Status create(Sweep *sweep, const FemModel *model, const FemGradientDef *
   sweep->weight = memory_zeroed(values, sizeof(double));
   sweep->slope = memory_zeroed(goals * values, sizeof(double));
   sweep->right = memory_zeroed(n, sizeof(double));
-  sweep->product = memory_zeroed(n, sizeof(double));
   sweep->factors = memory_zeroed(terms, sizeof(double));
-  if (!sweep->behind || !sweep->lambda || !sweep->weight || !sweep->slope || !sweep->right ||
-      !sweep->product || !sweep->factors)
+  if (!sweep->behind || !sweep->lambda || !sweep->weight || !sweep->slope || !sweep->right || !sweep->factors)
     return status_no_memory("the adjoint of a run");
   for (size_t g = 0; g < goals; g++) TRY(create_behind(sweep, &sweep->behind[g]));
-  if (is_exact(sweep)) return STATUS_OK;
   TRY(fem_damping_create(&sweep->damping, &sweep->replay.system));
   if (has_friction(sweep)) TRY(fem_friction_create(&sweep->scratch, &sweep->replay.system));
   sweep->krylov = (FemKrylov){.self = sweep, .multiply = multiply, .precondition = precondition};
@@ -166,20 +167,30 @@ static Status multiply(void *self, const double *x, double *y) {
   return STATUS_OK;
 }
 
+static Status factorise(Sweep *sweep) {
+  sweep->factorised = sweep->step;
+  sweep->is_spent = false;
+  return fem_replay_factorise(&sweep->replay, sweep->step);
+}
+
+static Status solve_with_factor(Sweep *sweep, double *beta, double *residual) {
+  Status status = fem_krylov_solve(&sweep->krylov, sweep->right, RESIDUAL, beta, residual);
+  sweep->is_spent = sweep->is_spent || status || sweep->krylov.directions > MOST_DIRECTIONS;
+  return status;
+}
+
+// With the factor of a later step, if it serves; else with this one's, which all goals share.
 static Status solve(Sweep *sweep, double *beta, double *residual) {
-  double whole = 0, left = 0;
   *residual = 0;
   memset(beta, 0, (size_t)sweep->replay.n * sizeof *beta);
   if (fem_vector_dot(sweep->replay.n, sweep->right, sweep->right) == 0) return STATUS_OK; // behind all terms
-  if (!is_exact(sweep)) return fem_krylov_solve(&sweep->krylov, sweep->right, RESIDUAL, beta, residual);
-  TRY(fem_equilibrium_solve(&sweep->replay.equilibrium, sweep->right, beta));
-  fem_matrix_multiply(&sweep->replay.system.matrix, beta, sweep->product);
-  for (int i = 0; i < sweep->replay.n; i++) {
-    left += (sweep->right[i] - sweep->product[i]) * (sweep->right[i] - sweep->product[i]);
-    whole += sweep->right[i] * sweep->right[i];
+  if (sweep->factorised > 0 && (!sweep->is_spent || sweep->factorised == sweep->step)) {
+    Status status = solve_with_factor(sweep, beta, residual);
+    bool is_fresh = sweep->factorised == sweep->step;
+    if (is_fresh || (status && status != STATUS_SOLVER) || (!status && *residual <= KEPT)) return status;
   }
-  *residual = sqrt(left / whole);
-  return STATUS_OK;
+  TRY(factorise(sweep));
+  return solve_with_factor(sweep, beta, residual);
 }
 
 static bool is_last(const Sweep *sweep) {
@@ -223,6 +234,9 @@ static Status solve_step(Sweep *sweep, int g, double *largest) {
   TRY(fem_gradient_judge(residual, sweep->replay.steps->times[k]));
   *largest = fmax(*largest, residual);
   TRY(pull_step(sweep, behind, beta));
+  TRY(fem_tangent_pull(&sweep->tangent, sweep->lambda, sweep->weight));
+  for (size_t i = 0; i < values_of(sweep); i++)
+    sweep->slope[values_of(sweep) * (size_t)g + i] -= sweep->weight[i];
   for (int i = 0; i < sweep->replay.n; i++)
     alpha[i] += c * fem_replay_mass(&sweep->replay, i) * beta[i] + rate_at(sweep, g, (size_t)dofs[i]);
   return STATUS_OK;
@@ -259,8 +273,9 @@ static double change_friction(const Sweep *sweep, const FemChange *change, const
 }
 
 // Adds what the step gives by one parameter.
-static Status add_step(Sweep *sweep, FemChange *change, int p, FemGradient *gradient) {
+static Status add_step(Sweep *sweep, int p, FemGradient *gradient) {
   const FemGradientDef *def = sweep->def;
+  FemChange *change = &sweep->change;
   const double *factors = sweep->factors;
   TRY(fem_change_find(change, &sweep->varied, &sweep->tangent, &def->parameters[p], def->follows_choice));
   resist(sweep, &def->parameters[p], change);
@@ -270,10 +285,8 @@ static Status add_step(Sweep *sweep, FemChange *change, int p, FemGradient *grad
     TRY(fem_goal_change(&def->goals[g], &sweep->tangent, factors, change, &sum));
     factors += def->goals[g].term_count;
     spread(sweep, of_step(sweep, behind->beta, sweep->step), sweep->step > 0 ? -1 : 0);
-    TRY(fem_tangent_pull(&sweep->tangent, sweep->lambda, sweep->weight));
     for (size_t i = 0; i < values_of(sweep); i++)
-      sum += sweep->lambda[i] * change->force[i] +
-             (slope_at(sweep, g, i) - sweep->weight[i]) * change->motion[i] +
+      sum += sweep->lambda[i] * change->force[i] + slope_at(sweep, g, i) * change->motion[i] +
              rate_at(sweep, g, i) * change->speed[i];
     gradient->derivatives[g * def->parameter_count + p] += sum + change_friction(sweep, change, behind);
   }
@@ -281,12 +294,13 @@ static Status add_step(Sweep *sweep, FemChange *change, int p, FemGradient *grad
 }
 
 static Status add_parameters(Sweep *sweep, FemGradient *gradient) {
-  FemChange change;
-  Status status = fem_change_create(&change, &sweep->tangent);
-  for (int p = 0; p < sweep->def->parameter_count && !status; p++)
-    status = add_step(sweep, &change, p, gradient);
-  fem_change_destroy(&change);
-  return status;
+  const FemModel *model = sweep->replay.system.model;
+  sweep->change.has_energies = false;
+  for (int g = 0; g < sweep->def->goal_count; g++)
+    if (fem_goal_is_due(&sweep->def->goals[g], model, sweep->replay.state.time))
+      sweep->change.has_energies = true;
+  for (int p = 0; p < sweep->def->parameter_count; p++) TRY(add_step(sweep, p, gradient));
+  return STATUS_OK;
 }
 
 // What friction at this step hands to the step before.
@@ -375,10 +389,8 @@ static Status go_back_with(Sweep *sweep, FemGradient *gradient) {
 static Status go_back_to(Sweep *sweep, int k, FemGradient *gradient) {
   sweep->step = k;
   TRY(fem_replay_return(&sweep->replay, k));
-  Status status = fem_tangent_create(&sweep->tangent, &sweep->replay.system, &sweep->replay.state);
-  if (!status) status = go_back_with(sweep, gradient);
-  fem_tangent_destroy(&sweep->tangent);
-  return status;
+  TRY(fem_tangent_find(&sweep->tangent, &sweep->replay.state));
+  return go_back_with(sweep, gradient);
 }
 
 // ---- Where the run begins.

@@ -10,8 +10,8 @@
 #include "fem/effect/contact/stick.h"
 
 enum { MAX_ITERATIONS = 30, STICKS = 1, SLIPS = 2 };
-// A step is balanced once Newton's method does not halve what is left, which is then at most this share of
-// the largest force.
+// A step is balanced once Newton's method with the matrix there, which is near J or corrected by GMRES, does
+// not halve what is left, which is then at most this share of the largest force.
 static const double LEAST_FALL = 0.5, BALANCE = 1e-9;
 // The matrix's factor serves on while each step by it leaves at most this; below that share of the largest
 // force nothing is left but rounding.
@@ -123,9 +123,11 @@ Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemRepl
   replay->v = memory_zeroed(count * n, sizeof(double));
   replay->force = memory_zeroed(n, sizeof(double));
   replay->step = memory_zeroed(n, sizeof(double));
+  replay->weights = memory_zeroed(n, sizeof(double));
   replay->histories = memory_zeroed(count * FEM_MAX_EFFECTS, sizeof *replay->histories);
-  if (!replay->u || !replay->v || !replay->force || !replay->step || !replay->histories)
+  if (!replay->u || !replay->v || !replay->force || !replay->step || !replay->weights || !replay->histories)
     return status_no_memory("the replay of a run");
+  for (size_t i = 0; i < n; i++) replay->weights[i] = 1;
   if (steps->u && steps->unknown_count != replay->n)
     return status_fail(STATUS_INPUT, "the steps are of a run with %d unknowns, the replay has %d",
                        steps->unknown_count, replay->n);
@@ -133,6 +135,7 @@ Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemRepl
   TRY(fem_system_create_state(&replay->system, &replay->state));
   TRY(create_slips(replay));
   TRY(create_krylov(replay));
+  TRY(fem_mixing_create(&replay->mixing, replay->n));
   return fem_equilibrium_create(&replay->equilibrium, &replay->system, &replay->state, &fem_solver_cholmod);
 }
 
@@ -140,13 +143,14 @@ void fem_replay_destroy(FemReplay *replay) {
   for (int i = 0; replay->histories && i < replay->steps->count * FEM_MAX_EFFECTS; i++)
     fem_effect_history_destroy(&replay->histories[i]);
   fem_krylov_destroy(&replay->krylov);
+  fem_mixing_destroy(&replay->mixing);
   fem_equilibrium_destroy(&replay->equilibrium);
   for (int i = 0; i < FEM_MAX_EFFECTS; i++) replay->before.histories[i] = (FemEffectHistory){0}; // borrowed
   fem_state_destroy(&replay->before);
   fem_state_destroy(&replay->state);
   fem_system_destroy(&replay->system);
   void *arrays[] = {replay->u,     replay->v,         replay->force, replay->step, replay->ahead,
-                    replay->aside, replay->histories, replay->slips, replay->rate};
+                    replay->aside, replay->histories, replay->slips, replay->rate, replay->weights};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
   *replay = (FemReplay){0};
 }
@@ -205,33 +209,51 @@ static Status multiply(void *self, const double *x, double *y) {
   return STATUS_OK;
 }
 
-// Newton's step from u and v, whose residual is in `force`; `is_fresh`: with the matrix there.
+// How Newton's method goes on.
+typedef struct FemReplayWay {
+  bool is_fresh;     // with the matrix there, not an earlier one
+  bool is_corrected; // by GMRES
+  bool is_mixed;
+} FemReplayWay;
+
+// Newton's step from u and v, whose residual is in `force`.
 static Status find_step(FemReplay *replay, double time, const double *u, const double *v, double c,
-                        bool is_fresh) {
-  if (is_fresh) TRY(fem_equilibrium_factorise_moving(&replay->equilibrium, time, u, v, c, c * c));
-  if (replay->is_near) return fem_equilibrium_solve(&replay->equilibrium, replay->force, replay->step);
+                        FemReplayWay way) {
+  if (way.is_fresh) {
+    TRY(fem_equilibrium_factorise_moving(&replay->equilibrium, time, u, v, c, c * c));
+    fem_mixing_forget(&replay->mixing);
+    replay->has_factor = true;
+  }
+  if (!way.is_corrected) {
+    TRY(fem_equilibrium_solve(&replay->equilibrium, replay->force, replay->step));
+    if (!way.is_mixed) return STATUS_OK;
+    fem_mixing_mix(&replay->mixing, replay->weights, replay->step);
+    fem_mixing_take(&replay->mixing, 1, replay->step);
+    return STATUS_OK;
+  }
   replay->c = c;
   replay->middle = u;
   replay->speed = v;
   return fem_krylov_solve(&replay->krylov, replay->force, INEXACT, replay->step, NULL);
 }
 
-static Status balance(FemReplay *replay, int k) {
+static Status balance(FemReplay *replay, int k, FemReplayWay way) {
   double c = fem_replay_formula(replay, k).c, time = replay->steps->times[k], left;
   size_t n = (size_t)replay->n;
   double *u = replay->u + n * (size_t)k, *v = replay->v + n * (size_t)k;
-  bool is_fresh = true;
+  fem_mixing_forget(&replay->mixing);
   TRY(find_residual(replay, k, &left));
   for (int i = 0; i < MAX_ITERATIONS && left > 0; i++) {
     double last = left;
-    bool was_fresh = is_fresh;
-    TRY(find_step(replay, time, u, v, c, is_fresh));
+    bool is_newton = way.is_fresh && (replay->is_near || way.is_corrected), was_fresh = way.is_fresh;
+    TRY(find_step(replay, time, u, v, c, way));
     for (size_t j = 0; j < n; j++) u[j] += replay->step[j];
     TRY(find_residual(replay, k, &left));
     double scale = scale_of(replay, k, c);
-    is_fresh = !(left <= SWIFT * last);
+    way.is_fresh = !(left <= SWIFT * last);
+    way.is_corrected = way.is_corrected || (way.is_fresh && was_fresh && !replay->is_near);
     if (!(left <= BALANCE * scale)) continue;
-    if (left > ROUNDED * scale && (left <= LEAST_FALL * last || !was_fresh)) continue;
+    if (left > ROUNDED * scale && (left <= LEAST_FALL * last || !is_newton)) continue;
     replay->worst = fmax(replay->worst, left / scale);
     return STATUS_OK;
   }
@@ -289,11 +311,21 @@ static void guess(FemReplay *replay, int k) {
   for (size_t i = 0; i < n && !found; i++) u[i] = lead(t, u + i, n, k, v + i);
 }
 
+// A step of a motion is short, so that an earlier factor serves; where it does not, nothing is spared.
+static Status find(FemReplay *replay, int k) {
+  if (!replay->system.model->scene->is_static) {
+    guess(replay, k);
+    Status status = balance(replay, k, (FemReplayWay){.is_fresh = !replay->has_factor, .is_mixed = true});
+    if (status != STATUS_SOLVER && status != STATUS_RETRY) return status;
+  }
+  guess(replay, k);
+  return balance(replay, k, (FemReplayWay){.is_fresh = true, .is_corrected = !replay->is_near});
+}
+
 static Status step(FemReplay *replay, int k) {
   const double *t = replay->steps->times;
   size_t n = (size_t)replay->n;
-  guess(replay, k);
-  TRY(balance(replay, k));
+  TRY(find(replay, k));
   fem_system_scatter(&replay->system, t[k], replay->u + n * (size_t)k, replay->v + n * (size_t)k,
                      &replay->state);
   TRY(count_switches(replay));
@@ -328,12 +360,18 @@ static void recall(FemReplay *replay, int k, FemState *state) {
 }
 
 Status fem_replay_return(FemReplay *replay, int k) {
-  double c = fem_replay_formula(replay, k).c, time = replay->steps->times[k];
   size_t place = (size_t)replay->n * (size_t)k;
-  const double *u = replay->u + place, *v = replay->v + place;
+  double time = replay->steps->times[k];
   recall(replay, k > 0 ? k - 1 : 0, &replay->before);
   replay->state.last = &replay->before;
-  TRY(fem_equilibrium_renew(&replay->equilibrium, time, u));
-  if (k == 0) return fem_system_couple(&replay->system, &replay->state);
-  return fem_equilibrium_factorise_moving(&replay->equilibrium, time, u, v, c, c * c);
+  TRY(fem_equilibrium_renew(&replay->equilibrium, time, replay->u + place));
+  fem_system_scatter(&replay->system, time, replay->u + place, replay->v + place, &replay->state);
+  return STATUS_OK;
+}
+
+Status fem_replay_factorise(FemReplay *replay, int k) {
+  double c = fem_replay_formula(replay, k).c, time = replay->steps->times[k];
+  size_t place = (size_t)replay->n * (size_t)k;
+  return fem_equilibrium_factorise_moving(&replay->equilibrium, time, replay->u + place, replay->v + place, c,
+                                          c * c);
 }

@@ -5,14 +5,17 @@
 //   v_n = c u_n + a₁ u_{n−1} + a₂ u_{n−2},   M (c v_n + a₁ v_{n−1} + a₂ v_{n−2}) = f(u_n, t_n; history),
 //
 // a static scene from equilibrium to equilibrium (c = a₁ = a₂ = 0). The replay differs from the run by the
-// error of its steps. The matrices of friction, of damping and of following pressures are far from exact, so
-// where there is one of them Newton's method solves its systems by GMRES on differences of forces.
+// error of its steps. In a motion a factor serves many steps, Newton's steps by it are mixed
+// (fem/time/newton/mixing.h). The matrices of friction, of damping and of following pressures are not exact;
+// in a static scene, and where a new one gets on no better, systems are solved by GMRES on differences of
+// forces.
 #ifndef TETLAP_FEM_GRADIENT_PATH_REPLAY_H
 #define TETLAP_FEM_GRADIENT_PATH_REPLAY_H
 
 #include "fem/effect/system.h"
 #include "fem/sparse/krylov.h"
 #include "fem/statics/equilibrium.h"
+#include "fem/time/newton/mixing.h"
 
 // The ends of a run's steps, from 0 on.
 typedef struct FemReplaySteps {
@@ -37,7 +40,10 @@ typedef struct FemReplay {
   FemSystem system;
   FemState before, state; // of the step before, and the one under trial
   FemEquilibrium equilibrium;
-  FemKrylov krylov;             // where there is friction or damping
+  FemKrylov krylov; // where there is friction or damping
+  FemMixing mixing;
+  double *weights;              // of its norm, 1                            (n)
+  bool has_factor;              // which serves the next step, too
   void *stick;                  // friction's effect, borrowed; NULL: none
   bool is_near;                 // the matrix, to J: no friction, damping, following pressure
   int n;                        // unknowns
@@ -58,9 +64,10 @@ void fem_replay_destroy(FemReplay *replay); // also of a zeroed one
 
 // STATUS_SOLVER: a step cannot be balanced; the message says which.
 Status fem_replay_go(FemReplay *replay);
-// Step k as it was found: `state` is there, `before` at step k − 1, the matrix K + c D + c² M is factorised.
-// Of step 0 nothing is.
+// Step k as it was found: `state` is there, `before` at step k − 1.
 Status fem_replay_return(FemReplay *replay, int k);
+// The matrix K + c D + c² M there.
+Status fem_replay_factorise(FemReplay *replay, int k);
 
 // Of step k; before and beyond the steps, and of a static scene, 0.
 FemReplayFormula fem_replay_formula(const FemReplay *replay, int k);
