@@ -15,6 +15,8 @@ typedef struct FemTangent {
   const FemState *state;  // borrowed
   FemMatrix stiffness;    // K = −∂f/∂x at rest over all coordinates, without friction
   long long layout;       // of the system's pattern, of which that is; 0: of none
+  double *coupled;        // where everything was when that was found to do  (3·vertex_count)
+  double reach;           // how far vertices may be from there [m]
   FemLearned learned;     // what that lacks of contact
   int *every_dof;         // 0, 1, 2 …                                    (3·vertex_count)
   double *still;          // velocities, 0                                (3·vertex_count)

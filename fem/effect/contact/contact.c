@@ -295,6 +295,10 @@ ContactSystem *fem_effect_contact_system(void *effect) {
   return ((Contact *)effect)->system;
 }
 
+double fem_effect_contact_reach(const void *effect) {
+  return ((const Contact *)effect)->reach;
+}
+
 Status fem_effect_contact_evaluate(const FemSystem *system, const FemState *state,
                                    const ContactEvaluation **evaluation) {
   Contact *contact = fem_system_effect(system, &fem_effect_contact);
