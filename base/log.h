@@ -26,7 +26,7 @@ void log_progress(const char *format, ...) __attribute__((format(printf, 1, 2)))
 // Whether the progress line is seen: standard error is a terminal.
 bool log_has_terminal(void);
 // Where standard error is no terminal, progress is lines: one is due at each tenth of the way, and a minute
-// after the last. None is due on a terminal or at the end (`share` 1), of which the caller tells anyway.
+// after the last. None is due on a terminal or at the end (`share` 1), which the caller reports anyway.
 typedef struct LogPace {
   int tenth;    // that the last line was in
   double due_s; // by the wall clock; 0: nothing has been asked yet

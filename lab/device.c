@@ -95,7 +95,7 @@ typedef struct Row {
   const char *model, *set, *quantity, *residence, *device;
   long long batch;
   double handed_on, to_host;      // shares of the pairs
-  double gate, of_peak, of_issue; // NaN: not told
+  double gate, of_peak, of_issue; // NaN: not known
   double kernel_rate, rate, rate_min, rate_max, spread, cpu_rate;
 } Row;
 
@@ -206,7 +206,7 @@ static Status take_rounds(Bench *bench, int first, int first_torch) {
 // --- The rows.
 
 // Of what the device can do at most, over the time of its kernels; of a processor, of what a core can, over
-// processor time. NaN: nobody says.
+// processor time. NaN: not known.
 static double share_of_peak(const Bench *bench, const Contestant *contestant, double kernel_rate,
                             double cpu_rate) {
   const double peak = bench->peak[device_overlap_arithmetic(contestant->overlap)];
@@ -214,7 +214,7 @@ static double share_of_peak(const Bench *bench, const Contestant *contestant, do
   return contestant->flops > 0 && peak > 0 ? contestant->flops * rate / peak : NAN;
 }
 
-// Of the instructions that a device can issue; NaN: nobody says how many.
+// Of the instructions that a device can issue; NaN: it is not known how many.
 static double share_of_issue(const Bench *bench, const Contestant *contestant, double kernel_rate) {
   const double most = bench->device.info.issue;
   return contestant->instructions > 0 && most > 0 ? contestant->instructions * kernel_rate / most : NAN;
@@ -361,7 +361,7 @@ static Status make_inputs(Bench *bench) {
   return STATUS_OK;
 }
 
-// The maker's figure where the driver tells the kind of GPU; else what is measured.
+// The maker's figure where the driver names the kind of GPU; else what is measured.
 static Status find_peak(Bench *bench) {
   const DeviceInfo *info = &bench->device.info;
   double *peak = bench->peak;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The peak of one core of this machine: the roof of the roofline model (Williams, Waterman, Patterson 2009).
+// The peak of one core of this machine: the bound of the roofline model (Williams, Waterman, Patterson 2009).
 #ifndef TETLAP_LAB_PEAK_H
 #define TETLAP_LAB_PEAK_H
 

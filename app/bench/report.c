@@ -4,7 +4,7 @@
 #include "app/cli/versions.h"
 #include "base/machine/cpu.h"
 
-// What every row tells.
+// What every row has.
 typedef struct Common {
   const char *bench, *processor, *simd, *versions;
   long long threads, repeats;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rows that a bench prints. Beside its own columns every row tells `bench`
+// The rows that a bench prints. Beside its own columns every row has `bench`
 // (first), `threads`, `repeats`, `processor`, `simd` and `versions` (last).
 #ifndef TETLAP_APP_BENCH_REPORT_H
 #define TETLAP_APP_BENCH_REPORT_H
@@ -13,7 +13,7 @@ typedef struct AppBenchReport {
   const AppTableColumn *columns; // (column_count)
   int column_count;
   size_t row_size;      // of the row's struct
-  bool has_own_threads; // a column of its own tells `threads`
+  bool has_own_threads; // a column of its own has `threads`
 } AppBenchReport;
 
 // Prints rows, elements of row_size bytes, to standard output. STATUS_IO, STATUS_MEMORY.

@@ -29,8 +29,8 @@ typedef struct Block {
   double *gradient;      // (count, 24), owned
   double *centroid;      // (count, 3), owned
   unsigned *flags;       // (count), owned
-  double *logits;        // (count), owned; NULL: the model tells none
-  double *swapped;       // (count), owned: what the status hangs on, V or logit, the two exchanged
+  double *logits;        // (count), owned; NULL: the model gives none
+  double *swapped;       // (count), owned: what the status depends on, V or logit, the two exchanged
 } Block;
 
 void app_evaluation_begin(AppEvaluationRun *run, const OverlapModel *model, AppEvaluationLogits logits) {
@@ -213,7 +213,7 @@ static void add_confidence(AppEvaluationRun *run, double logit, bool intersects)
   run->intersecting[bin] += intersects;
 }
 
-// `told`: the logit if the model tells one, else V.
+// `told`: the logit if the model gives one, else V.
 static bool is_right(const Block *block, size_t i, double told) {
   if (block->logits) return (told > 0) == (block->pairs->status[i] != 0);
   return (told > 0) == (block->pairs->volume[i] > 0);

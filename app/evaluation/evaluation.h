@@ -45,16 +45,17 @@ typedef struct AppEvaluation {
   double volume_error_sum;                          // Σ|ΔV| / ΣV
   double gradient_error;                            // Σ‖Δ∇V‖ / Σ‖∇V‖
   double gradient_error_median, gradient_error_p90; // of ‖Δ∇V‖ / ‖∇V‖
-  double angle_median_deg, angle_p90_deg; // between the forces Σ ∇V over the first tetrahedron, true and told
+  // Between the force Σ ∇V on the first tetrahedron and the true one.
+  double angle_median_deg, angle_p90_deg;
   // Σ|Δm| / Σ|m| over the moments m_z = V λ_z(x̄) of the eight vertices, with the true V: what the centroid is
   // off; and with the model's own. NaN: the model has no centroid.
   double moment_error, moment_error_own;
-  double ghost_volume;   // mean V told of pairs that share no volume
-  double ghost_gradient; // mean ‖∇V‖ told of them
+  double ghost_volume;   // mean V given for pairs that share no volume
+  double ghost_gradient; // mean ‖∇V‖ given for them
   // Σ|V(changed pair) − V| / ΣV over the first APP_EVALUATION_SYMMETRY_PAIRS pairs with V > 0: another order
   // of either's vertices, the two exchanged, a rotation about the cube's centre
   double defect_vertex_order, defect_swap, defect_rotation;
-  bool has_status; // the model tells a status of its own, a logit
+  bool has_status; // the model gives a status of its own, a logit
   AppEvaluationBounds bounds;
   double calibration_error; // Σ over bins of share · |predicted probability − frequency| (Naeini et al. 2015)
 } AppEvaluation;
@@ -64,12 +65,12 @@ typedef Status (*AppEvaluationLogits)(const void *self, int count, const double 
 
 typedef struct AppEvaluationRun {
   const OverlapModel *model;  // borrowed
-  AppEvaluationLogits logits; // NULL: the model tells no status
+  AppEvaluationLogits logits; // NULL: the model gives no status
   AppEvaluation sums;         // not yet divided
   AppEvaluationBoundsRun bounds;
   long long bins[APP_EVALUATION_BINS];
   double true_volume, true_gradient, true_moments; // Σ
-  double symmetry_volume;                          // Σ V told of the pairs that symmetries are tried on
+  double symmetry_volume;                          // Σ V given for the pairs that symmetries are tried on
   long long symmetry_count;
   long long outside;                // pairs that share no volume
   double *gradient_errors, *angles; // (inside), (angle_count), owned
@@ -82,7 +83,7 @@ typedef struct AppEvaluationRun {
 // Borrows the model. `logits` may be NULL. End it, whatever happens.
 void app_evaluation_begin(AppEvaluationRun *run, const OverlapModel *model, AppEvaluationLogits logits);
 // Evaluates `count` pairs. Without `pairs->gradient` or `pairs->centroid` the true ones are those of
-// clipping, checked as data sets check it. A model with logits is right about a pair if their sign tells
+// clipping, checked as data sets check it. A model with logits is right about a pair if their sign says
 // whether the closed tetrahedra meet; one without says no more than V, and is right if V > 0 just where the
 // two share volume.
 Status app_evaluation_add(AppEvaluationRun *run, const DatagenPairs *pairs, size_t count);

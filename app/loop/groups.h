@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a scene declares as `external: true`: motions and loads that whoever steps the run sets.
+// What a scene declares as `external: true`: motions and loads that are set by the program that steps the
+// run.
 //
 // A group has the name of its body or obstacle; the groups of a body with several of a kind are NAME.0,
 // NAME.1, … in the scene's order.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run that somebody steps: a scene opened, what it declares `external: true` set from outside, its state
-// read, kept and restored. Two doors lead here: the C API (include/tetlap/run.h) and the channel
+// A run that another program steps: a scene opened, what it declares `external: true` set from outside, its
+// state read, kept and restored. It is reached by the C API (include/tetlap/run.h) and the channel
 // (app/loop/serve.h).
 #ifndef TETLAP_APP_LOOP_LOOP_H
 #define TETLAP_APP_LOOP_LOOP_H
@@ -43,7 +43,7 @@ typedef struct AppLoop {
   bool has_vertex_forces;   // `forces` has those of vertices at the present time
   bool has_areas;           // so have `contacts`
   // After every step, at its state; contacts have areas once app_loop_read_areas is called. A Status other
-  // than OK ends the advance with it. NULL: nobody is told.
+  // than OK ends the advance with it. NULL: none.
   Status (*on_step)(void *self, struct AppLoop *loop);
   void *on_step_self;
 } AppLoop;

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run in another process's hands: a few words through a socket, arrays in shared memory. The other side is
+// A run that another process steps: a few words through a socket, arrays in shared memory. The other side is
 // the Python package (python/tetlap/_channel.py).
 //
 //   request   what, length, a, b        four words of 64 bits, then `length` bytes
-//   answer    code, length, time, b     the same; the time's bits; then `length` bytes of text: a message, or
-//   JSON
+//   answer    code, length, time, b     likewise, the time as its bits; the bytes are a message, or JSON
 //
 //   HELLO     a: version                ─► what there is, and where in the memory, as JSON
-//   ADVANCE   a: until [s], b: 1 = tell ─► where it is told of steps, an answer with the code STEP after
-//   each,
-//                                          to which the other side says GO (b: 1 = stop here)
+//   ADVANCE   a: until [s], b           ─► once there; with b = 1 an answer with the code STEP after each
+//                                          step, too, to which the other side says GO (b: 1 = stop here)
 //   SET       a: ramp [s], b: kind      ─► bytes: the group's name, a 0, the values
 //   FILL      b: which arrays           ─► forces and pressure (1), stress (2) of the present time
 //   KEEP                                ─► b: number of the state
@@ -26,7 +24,7 @@
 #include "app/loop/loop.h"
 
 // Serves until the other side closes the socket; `memory` is a file that this side makes as large as it
-// needs. A scene that cannot be opened is told to the first request. STATUS_IO: the channel fails.
+// needs. That a scene cannot be opened is the answer to the first request. STATUS_IO: the channel fails.
 Status app_loop_serve(const AppLoopOptions *options, int socket, int memory);
 
 #endif

@@ -51,7 +51,7 @@ Status app_loop_state_restore(AppLoop *loop, const AppLoopState *state) {
   return STATUS_OK;
 }
 
-// Beside the scene's, in the words that a checkpoint keeps for whoever wrote it.
+// Beside the scene's, in the words that a checkpoint keeps for the program that wrote it.
 static char *describe(const AppLoop *loop, const AppLoopState *state) {
   Record *record = record_new();
   record_merge(record, loop->origin);

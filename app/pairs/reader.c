@@ -17,7 +17,7 @@ static Status open_stream(AppPairsReader *reader, const char *path) {
   return STATUS_OK;
 }
 
-// The first byte tells: no text begins with either magic's.
+// The first byte decides: no text begins with either magic's.
 static Status find_format(AppPairsReader *reader) {
   int first = getc(reader->stream);
   if (ferror(reader->stream) && errno == EINTR) return status_fail(STATUS_INTERRUPTED, "interrupted");

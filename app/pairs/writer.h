@@ -22,7 +22,8 @@ typedef struct AppPairsWriter {
 // By the file's name: .csv, .json and .jsonl, .npy. STATUS_USAGE: another one.
 Status app_pairs_writer_form(const char *path, AppPairsForm *form);
 
-// `path` NULL: standard output. STATUS_USAGE: .npy there, whose head tells a number that is known at the end.
+// `path` NULL: standard output. STATUS_USAGE: .npy there, whose head has a number that is known only at the
+// end.
 Status app_pairs_writer_open(AppPairsWriter *writer, const char *path, AppPairsForm form, bool has_gradient);
 // Of a batch with volumes, centroids and flags, and gradients if they are to be written.
 void app_pairs_writer_append(AppPairsWriter *writer, const OverlapBatch *batch);

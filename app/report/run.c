@@ -187,7 +187,7 @@ void app_report_run_destroy(AppReportRun *run) {
 
 enum { SOURCE_SIZE = PATH_MAX + APP_MODEL_NAME };
 
-// As a command line would name the model that a summary tells of. False: it tells of none.
+// As a command line would name the model that a summary names. False: it names none.
 static bool find_source(const Record *summary, char source[SOURCE_SIZE]) {
   const char *overlap = record_find_text(summary, "overlap"), *weights = record_find_text(summary, "weights");
   if (!overlap) return false;

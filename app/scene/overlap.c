@@ -33,7 +33,7 @@ static Status read_with(SceneNode *root, const char *path, const char *overlap, 
   return app_scene_read_tree(path, root, overrides, 1, scene);
 }
 
-// A scene without contact stays one: the choice of a model is no wish for contact. A scene that cannot be
+// A scene without contact stays one: choosing a model does not switch contact on. A scene that cannot be
 // read as it stands is read with the choice, which says what is wrong.
 static Status check_contact(const char *path, const char *const *overrides, int override_count,
                             const char *overlap) {

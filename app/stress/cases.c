@@ -180,7 +180,7 @@ static void judge_onset(const AppStressRun *run, AppStressRow *row) {
   app_stress_ask_most(row, "restarts", (double)run->result.integrator.restarts, 60);
 }
 
-// Apart at the end, or told of.
+// Apart at the end, or reported.
 static void judge_deep(const AppStressRun *run, AppStressRow *row) {
   double gap = app_stress_run_lowest(run, -1, 1, 0) - app_stress_run_highest(run, -1, 0, 0);
   const FemTrouble *trouble = &run->result.trouble;

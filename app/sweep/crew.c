@@ -30,7 +30,7 @@ AppSweepShare app_sweep_crew_share(int jobs, int threads, int count) {
   return (AppSweepShare){.jobs = jobs, .threads = threads > 0 ? threads : 1};
 }
 
-// Where a key is wrong it is wrong everywhere: told at once instead of in every line of the table.
+// Where a key is wrong it is wrong everywhere: reported at once instead of in every line of the table.
 static Status examine(AppSweepGrid *grid, const Record *before, bool again) {
   Status first = STATUS_OK;
   char message[512] = "";

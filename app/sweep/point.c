@@ -27,7 +27,7 @@ int app_sweep_point_count(const AppSweepBase *base) {
 }
 
 // Readable where it can be: "contact.stiffness=1e6,contact.overlap=clip"; what a folder's name should not
-// have becomes '_', and then, or where it is long, a digest tells it from others.
+// have becomes '_', and then, or where it is long, a digest distinguishes it from others.
 static void name_folder(AppSweepPoint *point, const AppSweepBase *base) {
   enum { ROOM = APP_SWEEP_FOLDER - DIGEST_TEXT - 1 };
   char whole[1024];
@@ -117,7 +117,7 @@ static bool has_file(const char *directory, const char *name) {
   return is_there;
 }
 
-// Whether a run of this scene, as it would be read now by this program, is what the manifest tells of.
+// Whether a run of this scene, as it would be read now by this program, is the one in the manifest.
 // Threads change no result.
 static bool is_same_scene(const Record *manifest, const FemSceneDef *scene) {
   const char *version = record_find_text(record_find(manifest, "versions"), "tetlap");
@@ -219,7 +219,7 @@ static void set_line(AppSweepPoint *point, const char *line) {
   snprintf(point->message, sizeof point->message, "%.*s", (int)strcspn(line, "\n"), line);
 }
 
-// The last error that this process told of in the log, else how it ended.
+// The last error that this process logged, else how it ended.
 static void explain(AppSweepPoint *point) {
   static const char mark[] = "error: ";
   char *path = file_join(point->directory, APP_SWEEP_LOG), *text = NULL;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Training of a TetrahedronPairNet, as published or after it: ½ cross-entropy of the status + ½ RMSLE of 1000
-// V, from normalised pairs. The network tells V of the normalised pair in a unit of its own (output_scale);
+// V, from normalised pairs. The network gives V of the normalised pair in a unit of its own (output_scale);
 // before the loss it is brought to 1000 V, so that the loss is about V whatever the normalisation.
 //
 // With loss.sobolev > 0 the loss has a term that the paper has not, of ∇V (rates.h).

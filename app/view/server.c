@@ -100,7 +100,7 @@ static enum MHD_Result send_state(const AppViewServer *server, struct MHD_Connec
   return fail(server, connection);
 }
 
-// What is written just now may not fit together, so it is read again before that is told.
+// What is written just now may not fit together, so it is read again before that is reported.
 static enum MHD_Result send_page(const AppViewServer *server, struct MHD_Connection *connection) {
   static const struct timespec pause = {.tv_nsec = 100 * 1000 * 1000};
   enum { ATTEMPTS = 3 };

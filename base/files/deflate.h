@@ -15,7 +15,7 @@ typedef enum DeflateEffort {
 // The room that `byte_count` bytes need in the worst case.
 size_t deflate_bound(size_t byte_count);
 
-// Packs into `target`, whose room is at least deflate_bound(byte_count) bytes; `*packed_count` tells how many
+// Packs into `target`, whose room is at least deflate_bound(byte_count) bytes; `*packed_count` says how many
 // were used. False: no memory, the only way in which it can fail.
 bool deflate_pack(void *target, size_t *packed_count, const void *bytes, size_t byte_count,
                   DeflateEffort effort);

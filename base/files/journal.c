@@ -79,7 +79,7 @@ static Status check_length(const Journal *journal) {
   return STATUS_OK;
 }
 
-// It is opened anew for each piece: what was moved or removed in between is told, not written to unseen.
+// It is opened anew for each piece: what was moved or removed in between is reported, not written to unseen.
 static Status write_next(const Journal *journal, const void *piece, size_t size) {
   TRY(check_length(journal));
   FILE *stream = fopen(journal->path, "r+b");

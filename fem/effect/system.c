@@ -252,7 +252,7 @@ void fem_system_gather(const FemSystem *system, const FemState *state, double *u
   }
 }
 
-// `what`: of which array the first value that is no number is told. RETRY if there is one.
+// `what`: of which array the first value that is no number is named. RETRY if there is one.
 static Status check_numbers(const FemSystem *system, const double *values, const char *what,
                             const char *from) {
   int count = 3 * system->model->vertex_count, i = 0;

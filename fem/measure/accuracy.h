@@ -11,9 +11,8 @@
 //         small by that share; under a prescribed force the displacement is too large by it. U is
 //         proportional to 1/c, so the stiffness that brings it to 1 % is c · 99 give / (1 − give).
 // rim     Near an edge of a body the nearest surface is its side, and material there is pushed sideways:
-//         the share of the force that is lost by that at this depth. With F_k the pairs of an element,
-//         w_k and g_k their weights and slopes (contact/pressure/field.h), n = Σ F_k / |Σ F_k| of the
-//         element,
+//         the share of the force that is lost by that at this depth. With F_k the forces of an element's
+//         pairs, w_k and g_k their weights and slopes (contact/pressure/field.h), n = Σ F_k / |Σ F_k|,
 //
 //           rim = Σ [ c (w_i |g_B| + w_j |g_A|) − F_k · n ] / Σ F_k · n.
 //

@@ -93,7 +93,7 @@ static const double NOTHING = FEM_DOUBT * FEM_DOUBT;
 // With fewer elements across a patch its pressure has the mesh's shape, whatever the stiffness
 // (docs/contact_error.md).
 static const double RESOLVED = 5;
-// Above this share of pressure times area the resultant is told alone.
+// Above this share of pressure times area the resultant alone is reported.
 static const double ONE_WAY = 0.5;
 
 static void record_estimate(const FemEstimate *estimate, Record *record) {

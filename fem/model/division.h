@@ -5,8 +5,8 @@
 
 #include "fem/model/model.h"
 
-// Makes model->share; one process: NULL. The first rank divides and tells the others, so it is the same on
-// all. Vertices of obstacles go to the first.
+// Makes model->share; one process: NULL. The first rank divides and sends that to the others, so it is the
+// same on all. Vertices of obstacles go to the first.
 Status fem_model_divide(FemModel *model);
 void fem_model_division_destroy(FemModel *model);
 

@@ -44,11 +44,11 @@ void fem_forces_destroy(FemForces *forces);
 
 bool fem_forces_has_friction(const FemSystem *system);
 
-// Those of a state, without areas and what is told at the surface.
+// Those of a state, without areas and what is reported at the surface.
 Status fem_forces_take(FemForces *forces, const FemState *state);
 // Of the same state, the areas of contact: surfaces are clipped for them.
 Status fem_forces_take_areas(FemForces *forces, const FemState *state);
-// Of the same state, what is told at the surface.
+// Of the same state, what is reported at the surface.
 Status fem_forces_take_surface(FemForces *forces, const FemState *state);
 
 #endif

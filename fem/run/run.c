@@ -264,7 +264,7 @@ static Status collect(FemRunState *run, Status status) {
   result->cost.phases.factorisation = result->matrix.solver.factorise_s;
   result->cost.phases.solve = result->matrix.solver.solve_s;
   result->cost.phases.total = result->cost.wall_s;
-  if (!status) fem_run_spread_collect(run, result); // else others may be elsewhere
+  if (!status) fem_run_spread_collect(run, result); // after a failure other ranks may not come here
   // Without a system, a new part could not be begun.
   if (run->recorder.system && run->system.model) TRY(keep_account(run));
   return written;

@@ -89,7 +89,7 @@ static Status measure_within_step(FemRunState *run, double time, FemMeasures *me
   fem_system_scatter(&run->system, time, u, v, &run->trial);
   Status status = fem_run_frames_measure(run, measures);
   if (status != STATUS_RETRY) return status;
-  TRY(fem_system_check_state(&run->system, &run->trial)); // a wider list does not help what is no number
+  TRY(fem_system_check_state(&run->system, &run->trial)); // no wider list makes a number of NaN
   TRY(fem_system_renew(&run->system, &run->trial));
   return fem_run_frames_measure(run, measures);
 }

@@ -28,8 +28,8 @@ static Status find_power(FemRunState *run, double time, double *power) {
   return STATUS_OK;
 }
 
-// The end of a step. Rounding leaves no step of its own before a frame: over no way all that slides is just
-// between sliding and sticking.
+// The end of a step. What rounding leaves before a frame is no step of its own: without motion it is not
+// decided what slides and what sticks.
 static double find_end(const FemRunState *run, double step, double target, double resolution) {
   double stop = fmin(target, run->target), to = run->time + step;
   return to < stop - resolution ? to : stop;

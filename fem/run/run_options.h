@@ -29,7 +29,7 @@ typedef struct FemRunOptions {
   void *observer;
   const double *initial_displacement; // from rest [m], or NULL: none    (vertex_count, 3)
   const struct FemCheckpoint *from;   // go on from there; NULL: from the start; borrowed
-  const char *origin;                 // JSON, kept in the checkpoints for whoever resumes; may be NULL
+  const char *origin;                 // JSON, kept in the checkpoints for those who resume; may be NULL
   bool is_strict;       // an energy gain beyond the run's bound (fem/time/audit.h) ends it: STATUS_SOLVER
   bool keep_trajectory; // keep positions and interface forces of every frame in the result
 } FemRunOptions;

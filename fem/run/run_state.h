@@ -24,7 +24,7 @@ typedef struct FemRunState {
   const FemRunOptions *options; // borrowed
   FemRunResult *result;         // borrowed; counts of what is over: closed parts and stages
   FemSystem system;
-  FemRest *rest;             // NULL: nobody may sleep
+  FemRest *rest;             // NULL: no body may sleep
   FemIntegrator *integrator; // NULL in a static scene
   FemStatics statics;        // of a static scene
   FemRecorder recorder;
@@ -43,8 +43,8 @@ typedef struct FemRunState {
   double stage_end;         // the next release of vertices, change for what sleeps, or the end [s]
   double target;            // a step ends there at the latest; INFINITY: anywhere [s]
   FemCheckpoint checkpoint; // where this part began
+  bool is_written;          // the file holds that checkpoint
   FemTrouble mesh_trouble;  // of the mesh itself, before anything moves
-  bool is_written;          // is that in the file
   // Clocks: of this part, time within MPI then (base/ranks.h), and when a checkpoint was written.
   double began_s, cpu_began_s, inside_began_s, written_s;
 } FemRunState;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run in the caller's hands: it goes on to a time when it is told to, its state is there to be read in
+// A run that the caller steps: it goes on to a time that the caller gives, its state is there to be read in
 // between, and it can be taken back to any state that was kept.
 //
 //   open ─► advance ─► read ─► (change what is prescribed) ─► advance ─► … ─► close

@@ -42,7 +42,7 @@ static double cubic_at(const Span *span, int c, double time) {
          h * s * (1 - s) * ((1 - s) * span->from_rate[c] - s * span->to_rate[c]);
 }
 
-// Whether what happens between the ends can be told from them.
+// Whether what happens between the ends can be found from them.
 static bool is_followed(const FemSignal *signal, const FemForesight *foresight, double begin, double end) {
   Span span = span_of(signal, foresight, begin, end);
   int samples = signal->is_curved && foresight->static_share == 0 ? SAMPLES_OF_CURVE : SAMPLES;

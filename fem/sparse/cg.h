@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Conjugate gradients for a symmetric positive definite matrix, with whatever preconditioner P the caller
 // has. Converged when √(rᵀ P r) ≤ tolerance · √(bᵀ P b), or as soon as |r| ≤ tolerance · |b|, which costs one
-// application of P less. The result does not depend on the number of
-// threads. Where ranks share the matrix, each has all of the vectors.
+// application of P less. The result does not depend on the number of threads. Where ranks share the matrix,
+// each has all of the vectors.
 #ifndef TETLAP_FEM_SPARSE_CG_H
 #define TETLAP_FEM_SPARSE_CG_H
 

@@ -81,8 +81,7 @@ const char *fem_solver_help(FemSolverKind kind);
 const FemSolverOps *fem_solver_ops(FemSolverKind kind); // not for FEM_SOLVER_AUTO
 
 // Where ranks share the matrix (share.h) none of the above can solve it: from now on solvers come from here,
-// by kind. NULL in it: there is none of that kind,
-// and a run refuses it. NULL: those of one process again.
+// by kind. NULL in it: there is none of that kind, and a run refuses it. NULL: those of one process again.
 void fem_solver_provide(const FemSolverOps *const table[FEM_SOLVER_COUNT]);
 
 // Whether the library of amg and gamg can be loaded; loads it.

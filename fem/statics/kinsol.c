@@ -11,7 +11,7 @@
 
 enum { FULL_STEPS = 12, LINE_SEARCH_STEPS = 40, MESSAGE_SIZE = 512 };
 
-// One call: KINSOL, and what it is told.
+// One call of KINSOL and what it needs.
 typedef struct Newton {
   FemEquilibrium *equilibrium;
   double time;

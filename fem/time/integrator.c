@@ -52,7 +52,7 @@ struct FemIntegrator {
   FemIntegratorStats before;  // counted before the last restart
   long long restart_count;
   FemStall own_stall;         // where the caller has none
-  long long failures_counted; // told to the stall
+  long long failures_counted; // that the stall has counted
 };
 
 static double *values_of(N_Vector vector) {

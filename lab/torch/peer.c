@@ -27,7 +27,7 @@ static Status write_inputs(LabTorchPeer *peer, const void *inputs, size_t size) 
   return STATUS_OK;
 }
 
-// The child reads from `to` and writes to `from`; what it says to the person is not ours to show.
+// The child reads from `to` and writes to `from`; what it prints for people is not shown.
 static int spawn(LabTorchPeer *peer, char *script, const LabTorchDef *def, const int to[2],
                  const int from[2]) {
   static const char *const names[] = {"float", "double", "bf16"};

@@ -102,7 +102,7 @@ static Status take_turn(void *self, int round) {
   return STATUS_OK;
 }
 
-// What tells contestants apart.
+// What distinguishes contestants.
 typedef struct Case {
   int model, set, quantity, batch, threads; // threads: their number
 } Case;

@@ -32,7 +32,7 @@ typedef struct Walk {
   double *x, *velocity; // of this place                                  (vertex_count, 3)
   Walker told, truth;
   int capacity;                    // of the pairs' answers
-  double *volume[2], *centroid[2]; // of the pairs of clipping, told and true
+  double *volume[2], *centroid[2]; // of the pairs of clipping, by the model and true
   // Sums: differences and the truth's.
   double volumes[2], moments[2], nodal[2], totals[2], normals[2];
   double tangential, largest_normal;

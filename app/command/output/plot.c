@@ -69,7 +69,8 @@ static const char *last_name(const char *directory) {
   return slash && slash[1] ? slash + 1 : directory;
 }
 
-// What tells two runs apart: their overlap models, else the names of their directories, or their whole paths.
+// What distinguishes two runs: their overlap models, else the names of their directories, or their whole
+// paths.
 static void label(const AppReportRun *runs, int count, const char **labels, AppModelName *models) {
   for (int r = 0; r < count; r++) labels[r] = last_name(runs[r].directory);
   if (count < 2) return;

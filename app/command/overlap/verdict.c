@@ -105,7 +105,7 @@ static Status check_digest(const Record *before, const AppVerdictPlan *plan, con
   return STATUS_OK;
 }
 
-// A model that cannot be opened is told before anything is asked of others.
+// A model that cannot be opened is reported before anything is asked of others.
 static Status try_model(const char *source) {
   OverlapModel model;
   if (strchr(source, ',') && !strchr(source, ':') && access(source, F_OK)) // neither a command nor a file
@@ -222,10 +222,11 @@ const AppCommand app_command_verdict = {
     .name = "verdict",
     .help = "say what an overlap model is fit for: detection, forces, motion",
     .options = option_table,
-    .arguments = &(
-        const AppArguments){"MODEL…", offsetof(Options, models), MOST_MODELS, offsetof(Options, model_count),
-                            .missing = "name a model: a name, weights, mine.so, mine.py:NAME, mine.onnx, exec:COMMAND",
-                            .excess = "'%s' is one model too many: at most %d"},
+    .arguments =
+        &(const AppArguments){
+            "MODEL…", offsetof(Options, models), MOST_MODELS, offsetof(Options, model_count),
+            .missing = "name a model: a name, weights, mine.so, mine.py:NAME, mine.onnx, exec:COMMAND",
+            .excess = "'%s' is one model too many: at most %d"},
     .doc = "Judge overlap models: symmetries and bounds on hard pairs, errors on pairs that no training saw, "
            "and "
            "runs of twelve scenes beside those of `clip`. docs/verdict.md has the conditions.\vThe same "

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/command/commands.h"
 
-#include <math.h>
 #include <stdio.h>
-#include <unistd.h>
 
 #include "app/cli/parse.h"
 #include "app/cli/ranks.h"
+#include "app/command/scene/check_notes.h"
 #include "app/job/job.h"
 #include "app/job/stiffness.h"
 #include "base/files/record.h"
@@ -14,206 +13,17 @@
 #include "base/ranks.h"
 #include "base/text.h"
 #include "fem/effect/effect.h"
-#include "fem/measure/thickness.h"
 #include "fem/model/compliance/compliance.h"
 #include "fem/model/compliance/laws.h"
 #include "fem/model/division.h"
 #include "fem/model/tolerance.h"
 #include "fem/run/check/choice.h"
-#include "fem/run/check/start.h"
-#include "fem/scene/drive.h"
 #include "fem/sparse/solver.h"
-
-enum { MAX_NOTES = 32, MAX_THIN = 6, MAX_LINES = 6 };
-// Elements through the thickness from which on linear ones bend as they should, roughly.
-static const double ENOUGH_LAYERS = 3.5;
-// A pressure over E from which on a body is told to be crushed: at half of it, it has half its height.
-static const double CRUSHED = 0.5;
-// Of the sizes of two bodies: from which on one of them may be in mm, the other in m.
-static const double FAR_LARGER = 300;
 
 typedef struct Options {
   AppJobOptions job;
   int rank_count; // --ranks; 0: not said
 } Options;
-
-// What the scene's author may not have meant.
-typedef struct Notes {
-  const char *texts[MAX_NOTES];
-  int count;
-  char overlaps[FEM_RUN_START_TOLD_COUNT][FEM_RUN_START_TEXT_SIZE];
-  char thin[MAX_THIN][512];
-  char crushed[512], far_larger[512];
-  char lines[MAX_LINES][256];
-} Notes;
-
-static void note(Notes *notes, bool is_true, const char *text) {
-  if (is_true && notes->count < MAX_NOTES) notes->texts[notes->count++] = text;
-}
-
-static bool is_zero(const double v[3]) {
-  return v[0] == 0 && v[1] == 0 && v[2] == 0;
-}
-
-static bool is_at_rest(const FemSceneDef *scene) {
-  bool moves = scene->has_gravity && !is_zero(scene->gravity);
-  for (int b = 0; b < scene->body_count; b++) {
-    const FemBodyDef *body = &scene->bodies[b];
-    moves = moves || body->driven_count > 0 || body->load_count > 0 || !is_zero(body->velocity) ||
-            !is_zero(body->spin);
-  }
-  for (int o = 0; o < scene->obstacle_count; o++) {
-    moves = moves || !fem_drive_is_still(&scene->obstacles[o].motion);
-  }
-  return !moves;
-}
-
-static bool is_locking(const FemModel *model) {
-  bool locks = false;
-  for (int p = 0; p < model->part_count; p++)
-    locks = locks || (model->parts[p].material.poisson >= 0.45 &&
-                      model->bodies[model->parts[p].body].element == FEM_ELEMENT_LINEAR);
-  return locks;
-}
-
-static bool meets_itself(const FemSceneDef *scene) {
-  bool meets = false;
-  for (int b = 0; b < scene->body_count; b++) meets = meets || scene->bodies[b].self_contact;
-  return meets;
-}
-
-static double machine_memory(void) {
-  return (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
-}
-
-// Who overlaps before anything has moved.
-static Status note_overlaps(const AppJob *job, Notes *notes) {
-  FemSystem system = {0};
-  TRY(fem_system_create(&system, &job->model));
-  const ContactEvaluation *contact;
-  FemEnergy energy;
-  Status status = fem_system_energy(&system, &system.accepted, &energy);
-  if (!status) status = fem_effect_contact_evaluate(&system, &system.accepted, &contact);
-  int count = status ? 0 : fem_run_start_overlaps(&system, contact, notes->overlaps);
-  for (int k = 0; k < count; k++) note(notes, true, notes->overlaps[k]);
-  fem_system_destroy(&system);
-  return status;
-}
-
-// Bodies that bend and have too few elements for it; quadratic ones need but one.
-static Status note_thin(const AppJob *job, Notes *notes) {
-  const FemSceneDef *scene = &job->scene;
-  for (int b = 0, k = 0; b < scene->body_count && k < MAX_THIN; b++) {
-    FemThickness found;
-    if (scene->bodies[b].element == FEM_ELEMENT_QUADRATIC) continue;
-    TRY(fem_thickness_find(&job->model, b, &found));
-    if (!found.is_slender || !(found.layers < ENOUGH_LAYERS)) continue;
-    snprintf(notes->thin[k], sizeof notes->thin[k],
-             "'%s' is slender, %.3g m thick, and has about %.0f linear %s through that: it bends too "
-             "stiffly; take element: "
-             "quadratic, or four layers or more",
-             scene->bodies[b].name, found.thickness, fmax(1, round(found.layers)),
-             round(found.layers) > 1 ? "elements" : "element");
-    note(notes, true, notes->thin[k++]);
-  }
-  return STATUS_OK;
-}
-
-// The least E of a body's materials [Pa].
-static double softest(const FemModel *model, int body) {
-  double least = INFINITY;
-  for (int p = model->bodies[body].part_begin; p < model->bodies[body].part_end; p++)
-    least = fmin(least, model->parts[p].material.young);
-  return least;
-}
-
-// Of the two that press each other hardest beside what they are made of.
-static Status note_crushed(const AppJob *job, Notes *notes) {
-  const FemModel *model = &job->model;
-  FemCompliance choice;
-  double worst = CRUSHED;
-  if (!job->scene.contact.is_on) return STATUS_OK;
-  TRY(fem_compliance_choose(model, &choice));
-  for (int a = 0; a < job->scene.body_count; a++)
-    for (int b = 0; b < choice.party_count; b++) {
-      double pressure = choice.pressures[a * choice.party_count + b], young = softest(model, a);
-      if (!fem_compliance_meets(model, a, b) || !(pressure > worst * young)) continue;
-      worst = pressure / young;
-      snprintf(
-          notes->crushed, sizeof notes->crushed,
-          "'%s' and '%s' may press each other with up to %.2g Pa, %.2g of the Young's modulus of '%s', by "
-          "loads and the hardest impact: it is crushed then, and what it does depends on its mesh; is that "
-          "meant, and are all units SI?",
-          model->bodies[a].name, fem_compliance_party_name(model, b), pressure, worst, model->bodies[a].name);
-    }
-  note(notes, worst > CRUSHED, notes->crushed);
-  fem_compliance_destroy(&choice);
-  return STATUS_OK;
-}
-
-// The box around a body as placed, at rest [m].
-static void measure_body(const FemModel *model, const FemModelBody *body, double low[3], double high[3]) {
-  for (int c = 0; c < 3; c++) {
-    low[c] = INFINITY, high[c] = -INFINITY;
-    for (int v = body->vertex_begin; v < body->vertex_end; v++) {
-      low[c] = fmin(low[c], model->rest[3 * (size_t)v + (size_t)c]);
-      high[c] = fmax(high[c], model->rest[3 * (size_t)v + (size_t)c]);
-    }
-  }
-}
-
-static double largest_side(const FemModel *model, const FemModelBody *body) {
-  double low[3], high[3];
-  measure_body(model, body, low, high);
-  return fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2]));
-}
-
-// A mesh in mm among others in m.
-static void note_units(const FemModel *model, Notes *notes) {
-  int least = 0, most = 0;
-  for (int b = 0; b < model->body_count; b++) {
-    if (largest_side(model, &model->bodies[b]) < largest_side(model, &model->bodies[least])) least = b;
-    if (largest_side(model, &model->bodies[b]) > largest_side(model, &model->bodies[most])) most = b;
-  }
-  double ratio = largest_side(model, &model->bodies[most]) / largest_side(model, &model->bodies[least]);
-  snprintf(notes->far_larger, sizeof notes->far_larger,
-           "'%s' is %.0f times as large as '%s'; if the mesh of one is in mm, it needs place: {scale: 0.001}",
-           model->bodies[most].name, ratio, model->bodies[least].name);
-  note(notes, ratio > FAR_LARGER, notes->far_larger);
-}
-
-// Lines that miss most of their body.
-static void note_lines(const FemModel *model, Notes *notes) {
-  for (int l = 0, k = 0; l < model->line_count && k < MAX_LINES; l++) {
-    const FemLine *line = &model->lines[l];
-    if (!(2 * line->count < line->def->points)) continue;
-    snprintf(
-        notes->lines[k], sizeof notes->lines[k],
-        "line '%.64s' has %d of its %d points in the body: from and to are places [m] of the body as placed, "
-        "at rest; is that meant?",
-        line->def->name, line->count, line->def->points);
-    note(notes, true, notes->lines[k++]);
-  }
-}
-
-static Notes take_notes(const AppJob *job) {
-  const FemSceneDef *scene = &job->scene;
-  int solids = scene->body_count + scene->obstacle_count;
-  Notes notes = {.count = 0};
-  note(&notes, solids > 1 && !scene->contact.is_on,
-       "there is no 'contact' section: the bodies will pass through each other and through obstacles");
-  note(&notes, solids == 1 && scene->contact.is_on && !meets_itself(scene),
-       "contact is on, but there is only one body, without self_contact, and no obstacle to touch");
-  note(&notes, is_at_rest(scene),
-       "nothing moves: no gravity, no initial velocity, no driven vertices, no moving obstacle");
-  note(&notes, is_locking(&job->model),
-       "linear tetrahedra are too stiff at a Poisson's ratio of 0.45 and above: bending is underestimated; "
-       "try element: quadratic or nodal");
-  note(&notes, job->model.free_count == 0, "every vertex is prescribed: there is nothing to solve");
-  note(&notes, fem_run_choice(&job->model, NULL).bytes > machine_memory(),
-       "the run needs more memory than this machine has");
-  return notes;
-}
 
 // How many coordinates of a body are prescribed, fixed and driven.
 typedef struct Prescribed {
@@ -300,7 +110,7 @@ static void print_body(const AppJob *job, int b) {
   printf("  %-12s %s: %d vertices, ", body->name, mesh, body->vertex_end - body->vertex_begin);
   if (quadratic_count > 0) printf("%d quadratic tetrahedra, for contact in ", quadratic_count);
   printf("%d tetrahedra\n", body->tet_end - body->tet_begin);
-  measure_body(&job->model, body, low, high);
+  app_check_notes_box(&job->model, body, low, high);
   printf("  %-12s %.4g × %.4g × %.4g m, from (%.4g, %.4g, %.4g)\n", "", high[0] - low[0], high[1] - low[1],
          high[2] - low[2], low[0], low[1], low[2]);
   for (int p = body->part_begin; p < body->part_end; p++) print_part(&job->model, p, def);
@@ -379,7 +189,7 @@ static void print_plan(const FemModel *model, const FemDivisionPlan *plan) {
          plan->rank_count * choice.bytes / 1e9);
 }
 
-static void print_text(const AppJob *job, const Notes *notes, const FemDivisionPlan *plan) {
+static void print_text(const AppJob *job, const AppCheckNotes *notes, const FemDivisionPlan *plan) {
   const FemSceneDef *scene = &job->scene;
   const FemModel *model = &job->model;
   printf("%s%s%s\n", scene->path, scene->title ? ": " : "", scene->title ? scene->title : "");
@@ -444,7 +254,7 @@ static void record_body(const AppJob *job, int b, Record *record) {
   describe_mesh(def->mesh_path, def->box_cells, mesh, sizeof mesh);
   record_text(record, "name", body->name);
   record_text(record, "mesh", mesh);
-  measure_body(&job->model, body, low, high);
+  app_check_notes_box(&job->model, body, low, high);
   record_numbers(record, "box_min", low, 3);
   record_numbers(record, "box_max", high, 3);
   record_integer(record, "vertices", body->vertex_end - body->vertex_begin);
@@ -507,7 +317,8 @@ static void record_plan(const FemModel *model, const FemDivisionPlan *plan, Reco
   record_whole(record, "memory_bytes", choice.bytes);
 }
 
-static void record_job(const AppJob *job, const Notes *notes, const FemDivisionPlan *plan, Record *record) {
+static void record_job(const AppJob *job, const AppCheckNotes *notes, const FemDivisionPlan *plan,
+                       Record *record) {
   const FemSceneDef *scene = &job->scene;
   const FemModel *model = &job->model;
   record_text(record, "scene", scene->path);
@@ -538,7 +349,7 @@ static void record_job(const AppJob *job, const Notes *notes, const FemDivisionP
   for (int i = 0; i < notes->count; i++) record_append_text(list, notes->texts[i]);
 }
 
-static Status print_json(const AppJob *job, const Notes *notes, const FemDivisionPlan *plan) {
+static Status print_json(const AppJob *job, const AppCheckNotes *notes, const FemDivisionPlan *plan) {
   Record *record = record_new();
   if (!record) return status_no_memory("the report");
   record_job(job, notes, plan, record);
@@ -547,26 +358,20 @@ static Status print_json(const AppJob *job, const Notes *notes, const FemDivisio
   return status;
 }
 
+static Status print(const AppJob *job, const Options *options) {
+  FemDivisionPlan plan = {0};
+  AppCheckNotes notes;
+  if (options->rank_count > 0) TRY(fem_model_division_plan(&job->model, options->rank_count, &plan));
+  TRY(app_check_notes_take(job, &notes));
+  if (options->job.is_json) return print_json(job, &notes, &plan);
+  print_text(job, &notes, &plan);
+  return STATUS_OK;
+}
+
 static Status check(const Options *options) {
   AppJob job;
-  FemDivisionPlan plan = {0};
   TRY(app_job_open(&job, &options->job, NULL, NULL));
-  Notes notes = take_notes(&job);
-  Status status =
-      options->rank_count > 0 ? fem_model_division_plan(&job.model, options->rank_count, &plan) : STATUS_OK;
-  if (!status) status = job.scene.contact.is_on ? note_overlaps(&job, &notes) : STATUS_OK;
-  if (!status) status = note_thin(&job, &notes);
-  if (!status) status = note_crushed(&job, &notes);
-  note_units(&job.model, &notes);
-  note_lines(&job.model, &notes);
-  if (status) {
-    app_job_close(&job);
-    return status;
-  }
-  if (options->job.is_json)
-    status = print_json(&job, &notes, &plan);
-  else
-    print_text(&job, &notes, &plan);
+  Status status = print(&job, options);
   if (!status && fflush(stdout) != 0) status = status_fail(STATUS_IO, "standard output cannot be written");
   app_job_close(&job);
   return status;

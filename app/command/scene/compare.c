@@ -114,12 +114,12 @@ typedef struct Observer {
   double wall_s;         // its limit; 0: none
   double most_steps;     // its limit; 0: none
   long long step_count;  // of the run so far
-  double tell_again_s;   // how long the run may last before its estimate is told anew; INFINITY: never
+  double tell_again_s;   // how long the run may last before its estimate is given again; INFINITY: never
   bool is_cut;           // by a limit
   double mark_s, mark_t; // where the last estimate was taken
 } Observer;
 
-// What is left at the pace since the last estimate; told when the run has lasted twice as long as was said,
+// What is left at the pace since the last estimate; given when the run has lasted twice as long as was said,
 // then twice as long again.
 static void tell_estimate(Observer *observer, const FemRunProgress *progress) {
   double now = clock_wall_s() - observer->began_s;
@@ -235,7 +235,7 @@ static int choose_next(const AppComparison *comparison, const CompareOptions *op
   return best;
 }
 
-// What the first run took tells what another will: all but the overlap costs the same, and the overlap the
+// What another run will take, by what the first took: all but the overlap costs the same, and the overlap the
 // model's cost of a pair for each pair that was asked for. Nothing is known after a run that failed: 0.
 static double expect_time(const AppComparison *comparison, int first, int m) {
   const FemRunResult *pilot = &comparison->models[first].result;

@@ -50,7 +50,7 @@ static void warn_of_processor(const Record *origin) {
                 was, app_versions_simd());
 }
 
-// The manifest tells how the run was begun.
+// The manifest says how the run was begun.
 static void keep_command(const Record *origin) {
   const char *command = record_find_text(origin, "command");
   char *words[] = {(char *)command};

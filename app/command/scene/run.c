@@ -58,7 +58,7 @@ static Status print_summary(const AppJob *job, const FemRunResult *result, Statu
 typedef struct Observer {
   AppProgress progress;
   DatagenCapture *capture; // NULL: none
-  FemTrouble told;         // what the log has been told of
+  FemTrouble told;         // what the log has reported
   AppBeacon beacon;
 } Observer;
 
@@ -164,7 +164,7 @@ static Status run_opened(const AppRunOptions *options, AppJob *job, const char *
   bool is_refused = app_job_folder_is_refused(status, &result);
   if (status && !is_refused) tell_of_checkpoint(job);
   if (is_refused) app_job_folder_remove(job->directory, missing);
-  // The summary tells of a run that failed, too, unless nothing can be written.
+  // There is a summary of a run that failed, too, unless nothing can be written.
   Status written =
       status == STATUS_IO || is_refused ? STATUS_OK : app_job_write_summary(job, &result, status);
   if (!status && !written) app_closing_print(job, &result);

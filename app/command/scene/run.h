@@ -17,7 +17,7 @@ typedef struct AppRunOptions {
   const Record *origin;             // what it says of itself (app/job/origin.h)
 } AppRunOptions;
 
-// Opens the scene, runs it, writes summary and manifest; tells the log what went wrong.
+// Opens the scene, runs it, writes summary and manifest; logs what went wrong.
 Status app_run_execute(const AppRunOptions *options);
 
 #endif

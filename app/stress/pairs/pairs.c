@@ -209,7 +209,7 @@ static Status ask_member(Asked *asked, const DatagenHardPair *pair, bool is_slow
   return asked->has_gradient ? compare_differences(asked, pair, answer.gradient, is_slow ? 7 : 1) : STATUS_OK;
 }
 
-// What double precision must hold; the volumes themselves are told besides.
+// What double precision must hold; the volumes themselves are reported beside that.
 static void ask_standard(const Asked *asked, AppStressRow *row) {
   const AppStressPairErrors *worst = &asked->worst;
   app_stress_ask_most(row, "misfit", asked->misfit, 1);

@@ -21,7 +21,7 @@ static const double LEAST_ERROR = 1e-9;
 
 // One validation set as the network that is bounded answers it.
 typedef struct Held {
-  double *volume, *bound; // told; (count), owned
+  double *volume, *bound; // as the networks give them; (count), owned
 } Held;
 
 typedef struct Bound {

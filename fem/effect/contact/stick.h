@@ -19,7 +19,7 @@ int fem_effect_stick_place(const void *effect);
 // A view of what it remembers, of the numbers of one of its histories.
 ContactStickHistory fem_effect_stick_history(const void *effect, const FemEffectHistory *history);
 
-// What it tells at the given vertices at a state (contact/friction/stick_told.h).
+// What it reports at the given vertices at a state (contact/friction/stick_told.h).
 Status fem_effect_stick_tell(void *effect, const FemState *state, const ContactStickTold *told);
 
 #endif

@@ -28,7 +28,7 @@ typedef struct Plastic {
 typedef struct Site {
   FemPoint point;
   const int *nodes; // of its element, borrowed from the model       (point.node_count)
-  int tet;          // where its stress is told: of a quadratic element the part at its corner
+  int tet;          // where its stress is reported: of a quadratic element the part at its corner
 } Site;
 
 typedef struct Plasticity {

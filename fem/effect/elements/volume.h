@@ -3,8 +3,9 @@
 // measure of volume change θ (fem/material/material.h). Of λ an element keeps λ_e = min(λ, μ) for itself; the
 // rest resists the mean over the elements around a vertex, of which there are a fifth as many:
 //
-//   U = Σ_e V_e Ψ(F_e; λ_e) + Σ_a V_a ½ (λ − λ_e) θ_a²,   θ_a = Σ_{e∋a} ¼ V_e θ_e / V_a,   V_a = Σ_{e∋a} ¼
-//   V_e
+//   U = Σ_e V_e Ψ(F_e; λ_e) + Σ_a V_a ½ (λ − λ_e) θ_a²
+//
+//   θ_a = Σ_{e∋a} ¼ V_e θ_e / V_a,   V_a = Σ_{e∋a} ¼ V_e
 //
 // It is the average nodal pressure tetrahedron (Bonet and Burton 1998, Comm. Num. Meth. Eng. 14), stabilised
 // by what the elements keep (as Puso and Solberg 2006 do), for any law. Its vertices are those of the mesh,

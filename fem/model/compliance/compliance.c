@@ -41,7 +41,7 @@ typedef struct Give {
   double low[3], high[3]; // the box around it at rest; of a shape without elements that of its radius [m]
 } Give;
 
-// What the whole scene tells of how hard its bodies meet.
+// What the whole scene says of how hard its bodies meet.
 typedef struct Course {
   double blow;   // the hardest [J]
   double travel; // of what is driven in a static scene, the farthest [m]
@@ -137,7 +137,7 @@ static double give_of(const Give *a, const Give *b) {
 typedef struct Meeting {
   bool is_curved, is_hollow; // one lies in the other's hollow
   double curvature;          // [1/m]
-  double radius;             // of their contact; 0: nothing tells it [m]
+  double radius;             // of their contact; 0: not known [m]
   double layer;              // what the interface must yield for each Pa [m/Pa]
   double leaf;               // the most that two bent leaves bear; INFINITY: they are none [Pa/m]
 } Meeting;

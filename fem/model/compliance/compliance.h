@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How stiff contact is: κ of each two that can meet, as the scene says or as chosen from the bodies.
 //
-// For the potential `field`: under a pressure p the interface of two
-// bodies yields by p/(2c) and the bodies by about p L (1/E_A' + 1/E_B'), L the height of the smaller one: a
-// patch of contact is no larger than that, and material farther away deforms little. So
+// For the potential `field`: under a pressure p the interface of two bodies yields by p/(2c) and the bodies
+// by about p L (1/E_A' + 1/E_B'), L the height of the smaller one: a patch of contact is no larger than that,
+// and material farther away deforms little. So
 //
 //   c = 25 / (L (1/E_A' + 1/E_B')),     E' = E/(1 − 3.5 ν⁴)
 //
@@ -62,7 +62,7 @@ typedef struct FemCompliance {
   int party_count;            // bodies (obstacles with a mesh among them), then obstacles without elements
   double *stiffness;          // κ of body a with party b                    (body_count, party_count)
   FemComplianceBound *bounds; // what it was chosen by                       (body_count, party_count)
-  double *pressures;          // by which they may press each other, roughly; 0: untold [Pa]     likewise
+  double *pressures;          // by which they may press each other, roughly; 0: not known [Pa]     likewise
   int *levels;                // of contact.smooth                           (body_count)
   bool
       *is_faceted; // a level above 0 is due, but its elements are quadratic, with straight edges (body_count)

@@ -8,7 +8,7 @@
 
 // One run of text; begins zeroed but for the stream.
 typedef struct FemBase64 {
-  FILE *stream;             // borrowed; its error flag tells of a failure
+  FILE *stream;             // borrowed; its error flag is set after a failure
   unsigned char waiting[3]; // bytes that do not fill a group of four characters yet
   int waiting_count;
 } FemBase64;

@@ -97,7 +97,7 @@ static void print_header(FILE *stream, const Packing *packing) {
 }
 
 // The header and the blocks, each a base64 text of its own; sizes are known once the blocks are written, so
-// the header is written twice. A file that cannot be written tells when it is committed.
+// the header is written twice. That a file cannot be written is found when it is committed.
 static bool print_packed(FILE *stream, Packing *packing, const Piece *piece) {
   uint64_t *header = packing->header;
   FemBase64 text = {.stream = stream};

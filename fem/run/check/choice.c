@@ -15,7 +15,7 @@ static const double MOST_IF_LINEAR = 40000;
 // As volumes become incompressible multigrid takes ever more iterations.
 static const double SOFTEST_POISSON = 0.47;
 
-// Vertices of a cube whose factor is as dear, beside multigrid, as those of all bodies that move.
+// Vertices of a cube whose factor costs as much, beside multigrid, as those of all bodies that move.
 static double equivalent_cube(const FemModel *model, const FemNumbering *now) {
   double sum = 0;
   for (int b = 0; b < model->body_count; b++)

@@ -83,7 +83,7 @@ static Status save_interfaces(FemCheckpoint *checkpoint, const FemSystem *system
   return status;
 }
 
-// Driven coordinates as the state has them, for whoever reads the file; unknowns as they are, which adding
+// Driven coordinates as the state has them, for those who read the file; unknowns as they are, which adding
 // and subtracting the place at rest would round.
 static void save_state(FemCheckpoint *checkpoint, const FemSystem *system, const FemState *state,
                        const double *u, const double *v) {

@@ -48,7 +48,7 @@ Status fem_run_checkpoint_remove(const FemRunState *run) {
 
 long long fem_run_checkpoint_steps(int unknown_count) {
   static const double WORK = 1e6; // steps times unknowns: some seconds to a minute
-  enum { LEAST = 200 };           // what a new beginning costs, some ten steps, shall not be felt
+  enum { LEAST = 200 };           // a new beginning costs some ten steps, which must be few beside these
   return (long long)fmax(LEAST, WORK / unknown_count);
 }
 

@@ -415,7 +415,7 @@ static void aim(void *self, double tolerance) {
 }
 
 static Status apply_gamg(PetscSolver *solver) {
-  double *right; // PETSc is told that its numbers are others
+  double *right; // PETSc is informed that its numbers have changed
   PETSC_TRY("a vector", solver->petsc->VecGetArray(solver->right_vec, &right));
   PETSC_TRY("a vector", solver->petsc->VecRestoreArray(solver->right_vec, &right));
   PETSC_TRY("the multigrid", solver->petsc->PCApply(solver->multigrid, solver->right_vec, solver->left_vec));

@@ -43,7 +43,7 @@ static int set_test(SUNNonlinearSolver solver, SUNNonlinSolConvTestFn test, void
   return SUN_SUCCESS;
 }
 static int set_most(SUNNonlinearSolver solver, int most) {
-  (void)solver, (void)most; // ours
+  (void)solver, (void)most; // FEM_NEWTON_ITERATIONS counts instead
   return SUN_SUCCESS;
 }
 static int get_iterations(SUNNonlinearSolver solver, long int *count) {
