@@ -5,7 +5,7 @@
 //   clip32  pairs ─► clip32 ─ doubtful ─► clip ─ doubtful ─► clip-scalar ─ too flat ─► the host's
 //   geo     pairs ─► gate to network; close pairs ─► clip ─► clip-scalar (geo.h) ─ no frame ─► the
 //           host's geo; geo-small likewise
-//   tpn     pairs ─► gate ─► network (overlap/tpn.h) ─ the first is flat ─► the host's exact; without x̄, and
+//   tpn     pairs ─► gate ─► network (overlap/tpn) ─ the first is flat ─► the host's exact; without x̄, and
 //           flags without BEYOND; tpn-published and tpn-bf16 likewise
 //
 // What the host answers goes back to the device, so that all answers are there. What a pair gets is to the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// fem/assembly and the effects on elements (elasticity, damping, gravity): sums over a model of several
-// bodies against single elements, derivatives, and any number of threads.
+// fem/effect/elements/assembly.h and the effects on elements (elasticity, damping, gravity): sums over a
+// model of several bodies against single elements, derivatives, and any number of threads.
 #include "suite.h"
 
 #include <omp.h>

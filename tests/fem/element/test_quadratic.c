@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// fem/quadratic, its faces and its mesh: energies a hand can compute, derivatives, rigid motion, patch tests.
+// fem/element/quadratic.h, its faces and its mesh: energies a hand can compute, derivatives, rigid motion,
+// patch tests.
 #include "suite.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// fem/svd3: two proper rotations and ordered, signed singular values, for whatever matrix.
+// fem/material/svd3.h: two proper rotations and ordered, signed singular values, for whatever matrix.
 #include "suite.h"
 
 #include "base/random.h"

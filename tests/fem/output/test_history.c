@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// fem/history: what goes in comes out, every line at once and whole, and can be gone on with.
+// fem/output/history.h: what goes in comes out, every line at once and whole, and can be gone on with.
 #include "suite.h"
 
 #include <signal.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// fem/obstacle_surface: what is drawn of obstacles without a mesh is where contact meets them, at all times.
+// fem/output/vtk/obstacle_surface.h: what is drawn of obstacles without a mesh is where contact meets them,
+// at all times.
 #include "scene.h"
 
 #include <string.h>

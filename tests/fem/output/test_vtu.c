@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// fem/vtu, fem/pvd: a frame is taken apart again by a small reader of the format's documentation, and every
+// fem/output/vtk: a frame is taken apart again by a small reader of the format's documentation, and every
 // byte of every array must be back.
 #include "suite.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// fem/run/choice: which solver `auto` takes, and why.
+// fem/run/check/choice.h: which solver `auto` takes, and why.
 #include "suite.h"
 
 #include <string.h>

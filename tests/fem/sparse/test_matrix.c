@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// fem/pattern and fem/matrix: layout by hand, sums against a dense matrix, products against a dense product.
+// fem/sparse/pattern.h and matrix.h: layout by hand, sums against a dense matrix, products against a dense
+// product.
 #include "suite.h"
 
 #include <omp.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// fem/solver: every solver in the table on small systems by hand and on random ones, against each other, and
-// on matrices that it must refuse.
+// fem/sparse/solver.h: every solver in the table on small systems by hand and on random ones, against each
+// other, and on matrices that it must refuse.
 #include "bar.h"
 
 #include <omp.h>
