@@ -205,11 +205,24 @@ static void weaken(ContactStickNode *node, double weak, double given, double len
   node->limit = least + node->excess * (1 - node->weak);
 }
 
-// ∫ L over what is cut off, with N halfway between then and now. L falls linearly, and stays at `least`.
+// The limit where the slip begins: the stretch goes straight from `carried` by `way`, its limit from `before`
+// to `now`, which it exceeds in the end. Of a vertex that stuck the limit then says nothing of what is cut
+// off.
+static double limit_at_onset(double k, Vec3 carried, Vec3 way, double before, double now) {
+  double rise = now - before, a = k * k * vec3_dot(way, way) - rise * rise,
+         b = 2 * (k * k * vec3_dot(carried, way) - before * rise),
+         c = fmin(k * k * vec3_dot(carried, carried) - before * before, 0),
+         root = sqrt(fmax(b * b - 4 * a * c, 0));
+  double at = b > 0 ? -2 * c / (b + root) : a > 0 ? (root - b) / (2 * a) : 1;
+  return before + fmin(at, 1) * rise;
+}
+
+// ∫ L over what is cut off, with N halfway between the onset, where the limit was `onset`, and now. L falls
+// linearly, and stays at `least`.
 static double work_of_cut(const ContactStickNode *node, const ContactStickEntry *entry, double least,
-                          double cut) {
+                          double onset, double cut) {
   double weak = entry ? entry->weak : 0, held = least + node->excess * (1 - weak);
-  double press = entry ? 0.5 * (1 + entry->limit / held) : 0.5;
+  double press = 0.5 * (1 + onset / held);
   double over = fmin(cut, (1 - weak) * node->over);
   return press * (0.5 * (held + node->limit) * over + least * (cut - over));
 }
@@ -229,7 +242,7 @@ static double return_radially(ContactStick *stick, const ContactStickHistory *hi
   Vec3 carried = project(normal, keep_energy(before, k, contact_deformation_times(node->deformation, kept)));
   Vec3 way = project(normal, vec3_scale(1 / node->weight, vec3_at(node->gap))),
        trial = vec3_add(carried, way);
-  double length = vec3_length(trial);
+  double length = vec3_length(trial), held = least + node->excess * (1 - (entry ? entry->weak : 0));
   if (node->excess > 0) weaken(node, entry ? entry->weak : 0, stick->laws[node->interface].length, length);
   node->slips = k * length > node->limit;
   node->advances = vec3_dot(way, trial) > 0;
@@ -240,8 +253,10 @@ static double return_radially(ContactStick *stick, const ContactStickHistory *hi
   node->trial = length;
   vec3_store(node->stretch, stretch);
   vec3_store(node->force, vec3_scale(-k, stretch));
-  double cut = node->slips ? 0.5 * (limit + node->limit) * (1 - kept_share) * length : 0;
-  if (node->slips && node->excess > 0) cut = work_of_cut(node, entry, least, (1 - kept_share) * length);
+  double onset = node->slips ? limit_at_onset(k, carried, way, limit, held) : 0;
+  double cut = node->slips ? 0.5 * (onset + node->limit) * (1 - kept_share) * length : 0;
+  if (node->slips && node->excess > 0)
+    cut = work_of_cut(node, entry, least, onset, (1 - kept_share) * length);
   double spent = before - 0.5 * k * vec3_dot(carried, carried) + cut;
   remember_slip(entry, vec3_scale(1 - kept_share, trial), spent, node);
   if (entry) stick->has_left[entry - history->entries] = false;

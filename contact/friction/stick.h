@@ -24,7 +24,8 @@
 //             s ← s L(w)/(k_a |s|) with w of the cut itself. D is the law's, but no less than
 //             2 (μ_s − μ) N/k_a, so that the force falls no faster than the spring rises: it is one function
 //             of positions, without a jump. w ← 0 where the vertex sticks again
-//   accepted  S_a ← F_a⁻¹ s;   dissipated += mean of μN_a then and now · length cut off
+//   accepted  S_a ← F_a⁻¹ s;   dissipated += mean of μN_a at the onset of slip and now · length cut off: the
+//             onset is where the way from S_a' to s_trial, and with it μN_a from then to now, meet last
 //   slid      G_a ← F_a⁻¹ (F_a G_a + s_trial − s), the way of the slave against the other; lengths add up
 //
 // Δ is zero to rounding in any common rigid motion and telescopes; only increments are averaged. Force and

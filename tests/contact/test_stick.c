@@ -131,6 +131,7 @@ START_TEST(the_spring_is_cut_at_the_limit) {
   double way = 0.1, k = STIFFNESS * AREA, elastic = MU * PRESS / k;
   ck_assert(elastic < 0.5 * way);
   shift(f, 0, 0, -way, 0);
+  f->meet[1] -= way; // the same of A touches
   eval(f);
   ck_assert_near(pull_of(f).y, MU * PRESS, 1e-12 * PRESS);
   ck_assert_int_eq(f->stick.slip_count, 4);
@@ -139,7 +140,7 @@ START_TEST(the_spring_is_cut_at_the_limit) {
   ck_assert_near(f->stick.stored + f->stick.spent, 0.5 * k * elastic * elastic + MU * PRESS * (way - elastic),
                  1e-12);
   accept(f);
-  shift(f, 0, 0, elastic, 0); // back until the spring is slack, where the same of A touches
+  shift(f, 0, 0, elastic, 0); // back until the spring is slack
   f->meet[1] += elastic;
   eval(f);
   ck_assert_near(pull_of(f).y, 0, 1e-9 * PRESS);
@@ -188,11 +189,30 @@ END_TEST
 // The energies of motions and obstacles are integrated by the trapezoidal rule, and so is this.
 START_TEST(a_press_that_grows_while_it_slides_dissipates_by_its_mean) {
   Fixture *f = start(1, true);
-  double way = 0.1, k = STIFFNESS * AREA, elastic = 3 * MU * PRESS / k;
-  f->force[2] = 3 * PRESS;
+  double way = 0.1, k = STIFFNESS * AREA, stretched = 2 * MU * PRESS / k;
   shift(f, 0, way, 0, 0);
   eval(f);
-  ck_assert_near(f->stick.spent, 2 * MU * PRESS * (way - elastic), 1e-12);
+  accept(f);
+  f->force[2] = 3 * PRESS;
+  shift(f, 0, way, 0, 0);
+  f->meet[0] += way; // the same of A touches
+  eval(f);
+  ck_assert_near(f->stick.spent, 2 * MU * PRESS * (way - stretched), 1e-12);
+  finish(f);
+}
+END_TEST
+
+// Nothing moves, so no more is dissipated than the spring had: what it could have held says nothing of it.
+START_TEST(a_press_that_falls_while_it_sticks_keeps_the_energy) {
+  Fixture *f = start(1, true);
+  double way = 1e-4, k = STIFFNESS * AREA, stored = 0.5 * k * way * way;
+  shift(f, 0, way, 0, 0);
+  eval(f);
+  accept(f);
+  f->force[2] = 1e-3 * PRESS;
+  eval(f);
+  ck_assert_int_eq(f->stick.slip_count, 4);
+  ck_assert_near(f->stick.stored + f->stick.spent, stored, 1e-12 * stored);
   finish(f);
 }
 END_TEST
@@ -259,6 +279,31 @@ START_TEST(a_long_step_dissipates_as_many_short_ones) {
     finish(f);
   }
   ck_assert_near(spent[1], spent[0], 1e-3 * spent[0]);
+}
+END_TEST
+
+// The same without μ_s where the press goes from 1 to `SHARES` on the way, and the slip begins in the middle
+// of that, or turns round.
+START_TEST(a_long_step_dissipates_as_many_short_ones_at_a_press_that_changes) {
+  static const double SHARES[] = {0.1, 3}, BEFORE[] = {0, 5e-3, -0.1};
+  const int counts[] = {1, 1000};
+  for (int c = 0; c < 6; c++) {
+    double spent[2], way = c % 2 ? 0.1 : 0.02;
+    for (int i = 0; i < 2; i++) {
+      Fixture *f = start(1, true);
+      double work = 0;
+      drag(f, BEFORE[c / 2], 1, &work);
+      double first = *history_of(f).dissipated;
+      for (int k = 0; k < counts[i]; k++) {
+        f->force[2] = PRESS * (1 + (SHARES[c % 2] - 1) * (k + 1) / counts[i]);
+        drag(f, way / counts[i], 1, &work);
+      }
+      spent[i] = *history_of(f).dissipated - first;
+      finish(f);
+    }
+    ck_assert_double_gt(spent[1], 0);
+    ck_assert_near(spent[0], spent[1], 1e-9 * spent[1]);
+  }
 }
 END_TEST
 
@@ -629,8 +674,10 @@ int main(void) {
   tcase_add_test(test_case, an_area_that_changes_while_it_sticks_keeps_the_energy);
   tcase_add_test(test_case, an_area_that_grows_at_the_limit_slips);
   tcase_add_test(test_case, a_press_that_grows_while_it_slides_dissipates_by_its_mean);
+  tcase_add_test(test_case, a_press_that_falls_while_it_sticks_keeps_the_energy);
   tcase_add_test(test_case, what_breaks_away_slides_at_less);
   tcase_add_test(test_case, a_long_step_dissipates_as_many_short_ones);
+  tcase_add_test(test_case, a_long_step_dissipates_as_many_short_ones_at_a_press_that_changes);
   tcase_add_test(test_case, what_sticks_again_holds_as_before);
   tcase_add_test(test_case, friction_at_rest_that_is_no_more_changes_nothing);
   tcase_add_test(test_case, forces_and_torques_of_a_pair_balance);
