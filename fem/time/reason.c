@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "base/vec3.h"
+#include "fem/model/limits.h"
 
 // Of a tetrahedron, its volume over that at rest.
 static double share_of(const FemModel *model, const double *positions, int tet) {
@@ -16,15 +17,15 @@ static double share_of(const FemModel *model, const double *positions, int tet) 
   return vec3_det4(now[0], now[1], now[2], now[3]) / vec3_det4(rest[0], rest[1], rest[2], rest[3]);
 }
 
-// How many elements are inside out, and what to do about them, as text; nothing where there are none.
+// How many elements are flat or inside out, and what to do about them, as text; nothing where there are none.
 static void name_inverted(const FemModel *model, const double *positions, char *text, size_t size) {
   int count = 0, first = -1;
   text[0] = 0;
   for (int e = 0; e < model->tet_count; e++)
-    if (share_of(model, positions, e) <= 0 && count++ == 0) first = e;
+    if (share_of(model, positions, e) <= FEM_ROUNDING && count++ == 0) first = e;
   if (first < 0) return;
   const FemModelBody *body = &model->bodies[model->tet_body[first]];
-  snprintf(text, size, ". Elements inside out: %d, element %d of body '%s' first: %s", count, first,
+  snprintf(text, size, ". Elements flat or inside out: %d, element %d of body '%s' first: %s", count, first,
            body->name, fem_material_limit(fem_model_law(model, first)));
 }
 
