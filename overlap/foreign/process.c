@@ -35,7 +35,8 @@ typedef struct Process {
   const char *missing; // what is told where there is no such program
   pid_t pid;           // 0: the process is not ours
   int socket, memory;
-  double limit; // of a reply [s]
+  double limit;  // of a reply [s]
+  bool is_known; // it has said what it is
   char *map;
   size_t capacity; // pairs
 } Process;
@@ -109,8 +110,9 @@ static Status fail_ended(Process *process) {
                        WTERMSIG(how), strsignal(WTERMSIG(how)));
   if (WEXITSTATUS(how) == 127) return status_fail(STATUS_INPUT, "%s: %s", process->name, process->missing);
   return status_fail(STATUS_DEVICE,
-                     "%s: the model's process ended with exit code %d; what it said stands above",
-                     process->name, WEXITSTATUS(how));
+                     "%s: the model's process ended with exit code %d%s; what it said stands above",
+                     process->name, WEXITSTATUS(how),
+                     process->is_known ? "" : " and without an answer (docs/own_model.md has the protocol)");
 }
 
 // A reply that comes after this would be taken for that of the next request: there is none.
@@ -262,6 +264,7 @@ static Status greet(Process *process, OverlapForeignPort *port) {
   char text[4096];
   TRY(exchange(process, request, reply, text, sizeof text));
   if (reply[0]) return fail_told(process, STATUS_INPUT, text);
+  process->is_known = true;
   *port = (OverlapForeignPort){
       .self = process, .gives = (uint32_t)reply[2] & ARRAYS_OF_IT, .ask = ask, .close = close_process};
   return STATUS_OK;
@@ -335,6 +338,8 @@ static Status launch(OverlapForeignPort *port, const char *name, const char *mis
 
 Status overlap_foreign_process_open(OverlapForeignPort *port, const char *command) {
   char shell[] = "sh", option[] = "-c", line[8192];
+  if (command[strspn(command, " ")] == 0)
+    return status_fail(STATUS_INPUT, "exec: a command is missing behind it, as in exec:./model");
   if (snprintf(line, sizeof line, "exec %s", command) >= (int)sizeof line)
     return status_fail(STATUS_INPUT, "exec: the command is too long");
   char *const arguments[] = {shell, option, line, NULL};

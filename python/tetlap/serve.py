@@ -101,13 +101,19 @@ class Model:
     def _check(self, key, value, count):
         if key not in _ARRAYS:
             raise ModelError(f"{self.name} returned {key!r}, which is none of {', '.join(_ARRAYS)}")
+        if value is None:
+            raise ModelError(f"{self.name} returned None as {key}: is a `return` missing?")
         if hasattr(value, "detach"):
-            value = value.detach().cpu().numpy()
+            value = value.detach().cpu()
+            value = (value.double() if value.is_floating_point() else value).numpy()
         shape = (count, *_ARRAYS[key][2])
         try:
-            value = np.asarray(value, dtype=np.float64)
+            value = np.asarray(value)
         except (TypeError, ValueError) as error:
             raise ModelError(f"{self.name} returned {key} that is no array of numbers: {error}") from None
+        if value.dtype.kind not in "fiu":
+            raise ModelError(f"{self.name} returned {key} that is no array of numbers: its type is {value.dtype}, expected float64")
+        value = value.astype(np.float64, copy=False)
         if value.shape != shape:
             raise ModelError(f"{self.name} returned {key} of shape {value.shape}, expected {shape}")
         return value

@@ -127,6 +127,9 @@ START_TEST(python_that_is_wrong) {
   expect_refused(PYTHON("wrong_shape"), STATUS_INPUT, "volume of shape (1, 1), expected (1,)");
   expect_refused(PYTHON("wrong_key"), STATUS_INPUT, "'volumes', which is none of volume");
   expect_refused(PYTHON("no_numbers"), STATUS_INPUT, "no array of numbers");
+  expect_refused(PYTHON("complex_numbers"), STATUS_INPUT, "its type is complex128, expected float64");
+  expect_refused(PYTHON("texts"), STATUS_INPUT, "its type is <U1, expected float64");
+  expect_refused(PYTHON("forgets"), STATUS_INPUT, "returned None as volume: is a `return` missing?");
   expect_refused(TETLAP_SOURCE_DIR "/tests/overlap/foreign/torn.py", STATUS_INPUT, "SyntaxError");
   expect_refused("none.py:f", STATUS_INPUT, "there is no such file");
   expect_failure(PYTHON("raises"), STATUS_SOLVER, "ValueError: no more than one");
@@ -137,6 +140,9 @@ START_TEST(python_that_is_wrong) {
   expect_failure(PYTHON("shrinks"), STATUS_SOLVER, "Operation not permitted");
   OverlapModel model;
   OverlapBatch batch = batch_of(PAIRS, false, true);
+  open_model(&model, PYTHON("whole_numbers"));
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  overlap_model_destroy(&model);
   open_model(&model, PYTHON("alone"));
   ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_INPUT);
   ck_assert_msg(strstr(status_message(), "gives V alone"), "%s", status_message());
@@ -218,7 +224,8 @@ static int count_children(void) {
 
 START_TEST(commands_that_are_wrong_leave_no_process) {
   expect_refused("exec:no-such-command-anywhere", STATUS_INPUT, "the command was not found");
-  expect_refused("exec:false", STATUS_DEVICE, "ended with exit code 1");
+  expect_refused("exec:false", STATUS_DEVICE, "ended with exit code 1 and without an answer");
+  expect_refused("exec: ", STATUS_INPUT, "a command is missing behind it, as in exec:./model");
   setenv("TETLAP_MODEL_SECONDS", "0.3", 1);
   expect_refused("exec:sleep 1000", STATUS_DEVICE, "has not answered within 0.3 s");
   if (has_numpy()) {
