@@ -33,16 +33,22 @@ void overlap_model_destroy(OverlapModel *model) {
   *model = (OverlapModel){0};
 }
 
-// A finite sum has finite terms; one that is not may have overflowed. Eight sums do not wait for each other.
-static inline bool is_finite(const double pair[OVERLAP_PAIR_SIZE]) {
-  double sum[8] = {0};
-  for (int i = 0; i < OVERLAP_PAIR_SIZE; i += 8)
-    for (int k = 0; k < 8; k++) sum[k] += pair[i + k];
-  for (int k = 0; k < 4; k++) sum[k] += sum[k + 4];
-  if (isfinite(sum[0] + sum[1] + (sum[2] + sum[3]))) return true;
+static bool is_finite(const double pair[OVERLAP_PAIR_SIZE]) {
   bool are_finite = true;
   for (int i = 0; i < OVERLAP_PAIR_SIZE; i++) are_finite &= isfinite(pair[i]);
   return are_finite;
+}
+
+enum { BLOCK = 64 }; // pairs looked through at once
+
+// Whether the sum of all coordinates of `count` pairs is finite: then each is. One that is not may have
+// overflowed. Eight sums do not wait for each other.
+static inline bool have_finite_sum(int count, const double *pairs) {
+  double sum[8] = {0};
+  for (int i = 0; i < OVERLAP_PAIR_SIZE * count; i += 8)
+    for (int k = 0; k < 8; k++) sum[k] += pairs[i + k];
+  for (int k = 0; k < 4; k++) sum[k] += sum[k + 4];
+  return isfinite(sum[0] + sum[1] + (sum[2] + sum[3]));
 }
 
 static Status fail_not_finite(int pair_index, const double pair[OVERLAP_PAIR_SIZE]) {
@@ -57,8 +63,13 @@ static Status fail_not_finite(int pair_index, const double pair[OVERLAP_PAIR_SIZ
 static int first_not_finite(const OverlapBatch *batch) {
   int first = batch->pair_count;
 #pragma omp parallel for schedule(static) reduction(min : first) if (batch->pair_count > 20000)
-  for (int i = 0; i < batch->pair_count; i++)
-    if (!is_finite(batch->pairs + (size_t)i * OVERLAP_PAIR_SIZE) && i < first) first = i;
+  for (int begin = 0; begin < batch->pair_count; begin += BLOCK) {
+    const double *pairs = batch->pairs + (size_t)begin * OVERLAP_PAIR_SIZE;
+    const int left = batch->pair_count - begin, count = left < BLOCK ? left : BLOCK;
+    if (have_finite_sum(count, pairs)) continue;
+    for (int i = 0; i < count; i++)
+      if (!is_finite(pairs + i * OVERLAP_PAIR_SIZE) && begin + i < first) first = begin + i;
+  }
   return first;
 }
 

@@ -148,8 +148,7 @@ static Status give(const Foreign *foreign, const OverlapBatch *batch, size_t at)
     TRY(check_doubt(foreign, batch->doubt[at], number_of(batch, at)));
   }
   const double volume = arrays[OVERLAP_FOREIGN_VOLUME][at];
-  const bool is_none = volume == 0 && !asks_for_all(foreign);
-  const double smaller = is_none ? 0 : overlap_sizes_smaller(batch->pairs + OVERLAP_PAIR_SIZE * at);
+  const double smaller = overlap_sizes_smaller(batch->pairs + OVERLAP_PAIR_SIZE * at);
   *answer.flags = 0;
   if (volume == 0 && asks_for_all(foreign)) *answer.flags = smaller > 0 ? OVERLAP_DISJOINT : OVERLAP_FLAT;
   if (volume < 0 || volume > smaller * (1 + 1e-9))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Libraries of users (overlap/foreign/library.h). The oracles are `clip` and what library.c says.
 #include <dlfcn.h>
+#include <math.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/mman.h>
@@ -254,6 +255,25 @@ START_TEST(volumes_that_none_can_have_are_flagged) {
 }
 END_TEST
 
+// Wherever it stands among many; numbers whose sum alone is not finite are none of them.
+START_TEST(a_coordinate_that_is_not_finite_is_named) {
+  static const int places[] = {0, 63, 64, 130, PAIRS - 1};
+  static const double values[] = {NAN, INFINITY, -INFINITY};
+  const int place = places[_i / 3];
+  char says[80];
+  OverlapModel model;
+  OverlapBatch batch = batch_of(PAIRS, false, false);
+  snprintf(says, sizeof says, "pair %d, tetrahedron 1, vertex 2: coordinate y is %g", place, values[_i % 3]);
+  open_model(&model, "keep=" TETLAP_MODEL_0);
+  for (int v = 0; v < 24; v += 8) pairs[70][v] = 1.5e308; // they overflow as a sum
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  pairs[place][19] = values[_i % 3];
+  ck_assert_int_eq(overlap_model_eval(&model, &batch), STATUS_INPUT);
+  ck_assert_msg(strstr(status_message(), says), "%s", status_message());
+  overlap_model_destroy(&model);
+}
+END_TEST
+
 // Of a model whose V is not finite, below 0, above the smaller tetrahedron.
 START_TEST(such_volumes_end_a_run_or_are_counted_as_asked) {
   static const char *const strict[] = {"strict=" TETLAP_MODEL_7, "strict=" TETLAP_MODEL_8,
@@ -363,6 +383,7 @@ int main(void) {
   tcase_add_test(cases, stress_holds_the_pull_back_of_centroids_to_differences);
   tcase_add_test(cases, a_library_is_told_where_a_scenes_pairs_are_from);
   tcase_add_test(cases, volumes_that_none_can_have_are_flagged);
+  tcase_add_loop_test(cases, a_coordinate_that_is_not_finite_is_named, 0, 15);
   tcase_add_loop_test(cases, such_volumes_end_a_run_or_are_counted_as_asked, 0, 3);
   tcase_add_loop_test(cases, what_comes_out_is_looked_at_of_any_model, 0, 2);
   tcase_add_test(cases, the_pair_that_ends_a_run_is_written_to_its_folder);
