@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """A `geo` trained on the forces that it makes in scenes, instead of on pairs.
 
-    python3 train_in_place.py NEW.safetensors [--start geo-small] [--scenes 500] [--epochs 40] [SCENE.yaml ...]
+    python3 train_in_place.py NEW.safetensors [SCENE.yaml ...] [--start geo-small] [--count 500] [--epochs 40]
 
 `clip` runs the scenes: these, or so many of boxes that are pressed and moved across each other. In each frame the force on a vertex is a sum over
-pairs, with the network's V and x̄ in it (nodal_forces.py). Adam makes least what its errors sum up to: errors of forces on vertices, and of their
-sum on a body, relative to all forces of the frame. So errors of neighbouring pairs learn to cancel. `--loss pairs` takes each pair's own errors
-instead, to compare.
+pairs, with the network's V and x̄ in it (nodal_forces.py). Adam makes least the errors of pairs and what they sum up to: errors of forces on
+vertices, and of their sum on a body, relative to all forces of the frame. So errors of neighbouring pairs learn to cancel. `--forces 0 --total 0`
+leaves errors of pairs alone, to compare.
 
 Features are whitened first, as in `tetlap train`. Weights as they are in the file have no common scale, and steps along their gradient lead nowhere.
 """
@@ -27,6 +27,8 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "models"))
 import geo  # noqa: E402
 
 BATCH, WARMUP, LONGEST = 24, 50, 1.0  # states a step; steps; the gradient's norm
+TINY = 1e-12  # below which squares of relative errors do not count
+LEAST = 1e-3  # of the largest forces of a run
 WHITE = 1e-6  # added to variances before they are divided by
 PERCENT = 1e-2  # the unit of relative errors in the loss
 
@@ -61,15 +63,12 @@ def random_scene(random, frames=3):
              "driven": [{"group": "z_max", "table": np.concatenate((np.zeros((1, 4)), way))}]}]}
 
 
-def states(scenes):
-    """The states of the frames of all scenes, run by clip. A scene that fails gives what it wrote."""
+def states(scenes, runs_by="clip"):
+    """The states of the frames of all scenes, but those in which bodies hardly touch."""
     for scene in scenes:
-        try:
-            run = tetlap.run(scene, overlap="clip")
-        except tetlap.RunError as failure:
-            print(failure, file=sys.stderr)
-            continue
-        yield from (state for _, state in nodal_forces.states(run))
+        found = [state for _, state in nodal_forces.states(tetlap.run(scene, overlap=runs_by))]
+        sizes = [np.linalg.norm(state.forces(state.moments)) for state in found]
+        yield from (state for state, size in zip(found, sizes) if size > LEAST * max(sizes))
 
 
 class Block:
@@ -84,14 +83,16 @@ class Block:
         self.moments = torch.from_numpy(np.concatenate([state.moments for state in some]))[at]
         number = np.full(len(pairs), -1)  # of a pair among those with a frame
         number[at.numpy()] = np.arange(len(at))
-        parts, pair_count, self.row_count = [], 0, 0
+        parts, states, pair_count, row_count = [], [], 0, 0
         for n, state in enumerate(some):
             pair, size = number[pair_count + state.entry // 8], np.linalg.norm(state.forces(state.moments))
-            push, on_first = (state.share[:, None] * state.push[state.entry // 8] / size), state.body == 0
-            parts.append([part[pair >= 0] for part in (self.row_count + state.vertex, 8 * pair + state.entry % 8, push, np.full(len(pair), n), on_first)])
-            pair_count, self.row_count = pair_count + len(state.pairs), self.row_count + state.vertex.max() + 1
-        self.row, self.entry, self.push, self.state, self.on_first = (torch.from_numpy(np.concatenate(part)) for part in zip(*parts))
-        self.count = len(some)
+            push, rows = state.share[:, None] * state.push[state.entry // 8] / size, state.vertex.max() + 1
+            of_first = np.where(state.body == 0, n, len(some))  # the row of the force on the first body; the last row is dropped
+            parts.append([part[pair >= 0] for part in (row_count + state.vertex, 8 * pair + state.entry % 8, push, of_first)])
+            pair_count, row_count = pair_count + len(state.pairs), row_count + rows
+            states.append(np.full(rows, n))
+        self.row, self.entry, self.push, self.of_first = (torch.from_numpy(np.concatenate(part)) for part in zip(*parts))
+        self.state, self.count = torch.from_numpy(np.concatenate(states)), len(some)
 
     def whiten(self, white):
         self.features, self.vectors = (self.features - white.mean) @ white.features, white.vectors.T @ self.vectors
@@ -108,10 +109,11 @@ class Block:
         return self.share[:, None] * (volume[:, None] * self.slack * (1 + change) - self.moments) / self.moments[:, :4].sum(1, keepdim=True)
 
     def forces(self, errors):
-        """Errors of forces on vertices (rows, 3), and of the sum on the first body of each state (count, 3)."""
+        """Of each state (count): the errors of the forces on all vertices, and of their sum on the first body."""
         given = (errors * self.moments[:, :4].sum(1, keepdim=True)).flatten()[self.entry, None] * self.push
-        return (given.new_zeros(self.row_count, 3).index_add(0, self.row, given),
-                given.new_zeros(self.count, 3).index_add(0, self.state[self.on_first], given[self.on_first]))
+        nodal = given.new_zeros(len(self.state), 3).index_add(0, self.row, given)
+        total = given.new_zeros(self.count + 1, 3).index_add(0, self.of_first, given)[:-1]
+        return (given.new_zeros(self.count).index_add(0, self.state, (nodal**2).sum(1)) + TINY).sqrt(), ((total**2).sum(1) + TINY).sqrt()
 
 
 class White:
@@ -137,10 +139,9 @@ class White:
             first.weight.copy_(first.weight @ torch.linalg.inv(self.features).T)
             for tensor in (last.weight, last.bias):
                 tensor[1:] = torch.linalg.solve(self.vectors, tensor[1:])
-        return network.float()
+        return network
 
     def leave(self, network):
-        network.double()
         first, last = network.layer[0], network.layer[-1]
         with torch.no_grad():
             first.weight.copy_(first.weight @ self.features.T)
@@ -149,53 +150,48 @@ class White:
                 tensor[1:] = self.vectors @ tensor[1:]
 
 
-def relative(blocks, network, offset_of):
-    """Errors of forces on vertices and of total forces, root mean squares over states, and of moments, mean over pairs."""
+def measure(blocks, network, offset):
+    """Relative errors of forces on vertices and of those on a body, means over states, and of moments, mean over pairs."""
+    sums, pairs = np.zeros(3), 0
     with torch.no_grad():
-        sums, pairs, count = np.zeros(3), 0, 0
         for block in blocks:
-            errors = block.errors(network, offset_of(network))
-            sums += [float((part**2).sum()) for part in block.forces(errors)] + [float(errors.abs().sum())]
-            pairs, count = pairs + errors.numel() / 8, count + block.count
-    return math.sqrt(sums[0] / count), math.sqrt(sums[1] / count), sums[2] / pairs
+            errors = block.errors(network, offset(network))
+            sums += [float(part.sum()) for part in (*block.forces(errors), abs(errors))]
+            pairs += len(errors)
+    return sums / (*2 * [sum(block.count for block in blocks)], pairs)
 
 
-def train(model, states, loss="forces", total=1.0, epochs=40, rate=1e-3, seed=1, quiet=False):
-    """Trains the model's network. Every tenth block is left out, where there are several; of these `relative` before and after each tenth of the epochs."""
+def train(model, states, forces=1.0, total=1.0, pairs=1.0, epochs=40, rate=5e-4, seed=1):
+    """Trains the model's network. Yields the epoch and `measure` of every tenth block, which is left out if there are more than one, at the start and
+    after each tenth of the epochs."""
     random = np.random.default_rng(seed)
     order = random.permutation(len(states))
     blocks = [Block(model, [states[n] for n in order[k:k + BATCH]]) for k in range(0, len(order), BATCH)]
     white = White(blocks)
     for block in blocks:
         block.whiten(white)
-    network, onset = white.enter(model.network), ((model.onset - white.mean) @ white.features).float()
+    network, onset = white.enter(model.network).float(), ((model.onset - white.mean) @ white.features).float()
 
-    def offset_of(network):
+    def offset(network):
         return math.log(1.28) - network(onset)[0, 0]
 
     kept, blocks = blocks[::10], [block for n, block in enumerate(blocks) if n % 10] or blocks
-    optimiser = torch.optim.Adam(network.parameters(), lr=rate)
-    step_count, told = epochs * len(blocks), [relative(kept, network, offset_of)]
-    schedule = torch.optim.lr_scheduler.LambdaLR(optimiser, lambda n: min(1, (n + 1) / WARMUP) * (1 + math.cos(math.pi * n / step_count)) / 2)
-    for epoch in range(epochs):
+    optimiser, steps = torch.optim.Adam(network.parameters(), lr=rate), epochs * len(blocks)
+    schedule = torch.optim.lr_scheduler.LambdaLR(optimiser, lambda n: min(1, (n + 1) / WARMUP) * (1 + math.cos(math.pi * n / steps)) / 2)
+    yield 0, measure(kept, network, offset)
+    for epoch in range(1, epochs + 1):
         for n in random.permutation(len(blocks)):
-            errors = blocks[n].errors(network, offset_of(network))
-            if loss == "pairs":
-                value = torch.nn.functional.huber_loss(errors / PERCENT, torch.zeros_like(errors))
-            else:
-                nodal, sums = blocks[n].forces(errors / PERCENT)
-                value = ((nodal**2).sum() + total * (sums**2).sum()) / blocks[n].count
+            errors = blocks[n].errors(network, offset(network)) / PERCENT
+            nodal, sums = blocks[n].forces(errors)
+            own = torch.nn.functional.huber_loss(errors, torch.zeros_like(errors), reduction="sum") / len(errors)
             optimiser.zero_grad()
-            value.backward()
+            (forces * nodal.mean() + total * sums.mean() + pairs * own).backward()
             torch.nn.utils.clip_grad_norm_(network.parameters(), LONGEST)
             optimiser.step()
             schedule.step()
-        if (epoch + 1) % max(1, epochs // 10) == 0:
-            told.append(relative(kept, network, offset_of))
-            if not quiet:
-                print(f"{epoch + 1}: errors of forces on vertices {told[-1][0]:.3e}, total {told[-1][1]:.3e}, of pairs' moments {told[-1][2]:.3e}", flush=True)
-    white.leave(network)
-    return told
+        if epoch % max(1, epochs // 10) == 0:
+            yield epoch, measure(kept, network, offset)
+    white.leave(network.double())
 
 
 def main(target, start="geo-small", scenes=(), count=500, seed=1, **options):
@@ -203,7 +199,10 @@ def main(target, start="geo-small", scenes=(), count=500, seed=1, **options):
     model, weights = geo.Geo(start), tetlap.read_weights(start)
     found = list(states(scenes or (random_scene(random) for _ in range(count))))
     print(f"{len(found)} states, {sum(len(state.pairs) for state in found)} pairs")
-    told = train(model, found, seed=seed, **options)
+    told = []
+    for epoch, errors in train(model, found, seed=seed, **options):
+        print(f"{epoch}: errors of forces on vertices {errors[0]:.3e}, on a body {errors[1]:.3e}, of moments of pairs {errors[2]:.3e}", flush=True)
+        told.append(errors)
     tensors = {name: tensor.detach().to(torch.from_numpy(weights[name]).dtype) for name, tensor in model.network.named_parameters()}
     tetlap.write_weights(target, tensors, shape=weights.shape, normalisation=weights.normalisation, range=weights.range,
                          provenance=f"{weights.provenance}; then examples/python/train_in_place.py")
@@ -215,10 +214,10 @@ if __name__ == "__main__":
     parser.add_argument("target", metavar="NEW.safetensors")
     parser.add_argument("scenes", nargs="*", metavar="SCENE.yaml")
     parser.add_argument("--start", default="geo-small")
-    parser.add_argument("--scenes", dest="count", type=int, default=500, help="random ones, where no files are named")
+    parser.add_argument("--count", type=int, default=500, help="of random scenes, where no files are named")
     parser.add_argument("--epochs", type=int, default=40)
-    parser.add_argument("--rate", type=float, default=1e-3)
+    parser.add_argument("--rate", type=float, default=5e-4)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--loss", choices=("forces", "pairs"), default="forces")
-    parser.add_argument("--total", type=float, default=1.0, help="weight of the force on a body")
+    for name, what in (("forces", "forces on vertices"), ("total", "the force on a body"), ("pairs", "each pair")):
+        parser.add_argument(f"--{name}", type=float, default=1.0, help=f"weight of the errors of {what}")
     main(**vars(parser.parse_args()))

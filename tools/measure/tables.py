@@ -236,6 +236,7 @@ TABLES = {
                         whole_runs, 3, shown="tetlap compare -q -j -t 1 --audit=0 -m clip,geo-small,geo,hybrid examples/NAME.yaml"),
     "bound": Bench([["tetlap", "eval", f"hybrid:{doubt}=geo-small", *law, "--count", "40000", "--json"] for _, law in BOUND_PAIRS for doubt in BOUND_DOUBTS], bound, 1,
                    shown="tetlap eval hybrid:DOUBT=geo-small --law LAW --mix KIND=1 --seed SEED --count 40000 --json"),
+    "in-place": Bench([["{python}", "tools/measure/in_place", "{program}"]], as_told, 1),
     "ranking": Bench([["tools/measure/ranking", "--rows", "benchmarks/ranking.json"]], as_told, 0.1),
     "learned": Bench([["tools/measure/learned", "{program}"]], as_told, 10),
     "own-models": Bench([["tools/measure/own", "{program}"]], as_told, 2),
