@@ -5,10 +5,8 @@
 
 `clip` runs the scenes: these, or so many of boxes that are pressed and moved across each other. In each frame the force on a vertex is a sum over
 pairs, with the network's V and x̄ in it (nodal_forces.py). Adam makes least the errors of pairs and what they sum up to: errors of forces on
-vertices, and of their sum on a body, relative to all forces of the frame. So errors of neighbouring pairs learn to cancel. `--forces 0 --total 0`
-leaves errors of pairs alone, to compare.
-
-Features are whitened first, as in `tetlap train`. Weights as they are in the file have no common scale, and steps along their gradient lead nowhere.
+vertices, and of their sum on a body, relative to all forces of the frame. `--forces 0 --total 0` leaves errors of pairs alone, to compare:
+benchmarks/learned.md does. Features are whitened first, as in `tetlap train`.
 """
 
 import argparse
