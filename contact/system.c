@@ -234,6 +234,10 @@ Status contact_system_keep(ContactSystem *system) {
   return contact_candidates_keep(&system->candidates, &system->layout);
 }
 
+double contact_system_least_reach(const ContactSystem *system) {
+  return contact_candidates_least_reach(&system->layout);
+}
+
 double contact_system_longest_step(const ContactSystem *system) {
   return system->candidates.time_left;
 }

@@ -63,6 +63,9 @@ Status contact_system_update(ContactSystem *system, double time, const double *p
 // bit, a list that is made anew is a copy of it. One is kept at a time.
 Status contact_system_keep(ContactSystem *system);
 
+// All elements nearer to each other than this are sure to be candidates where an update was asked for [m].
+double contact_system_least_reach(const ContactSystem *system);
+
 // How long the next step may be so that no vertex is expected to move beyond the margin, at the speeds of the
 // last update [s].
 double contact_system_longest_step(const ContactSystem *system);

@@ -131,6 +131,16 @@ double contact_candidates_reach(const ContactCandidates *candidates, const Conta
          contact_motion_approach(candidates->motions, &layout->interfaces[interface]);
 }
 
+double contact_candidates_least_reach(const ContactLayout *layout) {
+  double least = INFINITY;
+  for (int f = 0; f < layout->interface_count; f++) {
+    const ContactInterfaceDef *interface = &layout->interfaces[f];
+    double margin = interface->a == interface->b ? SELF_MARGIN * layout->margin : layout->margin;
+    least = fmin(least, margin - margin / CONTACT_STEPS_AHEAD);
+  }
+  return least;
+}
+
 // One of the steps that the margin is made for is used up, or the next step might use up the rest. The latter
 // cannot be helped by a search before half of that is used up, unless nothing was near and the margin may
 // grow.

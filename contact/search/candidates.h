@@ -86,6 +86,10 @@ bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout
 double contact_candidates_reach(const ContactCandidates *candidates, const ContactLayout *layout,
                                 int interface);
 
+// The same after any update, which leaves at most one of the steps that a margin is made for used up, for all
+// interfaces that are searched; INFINITY: there are none.
+double contact_candidates_least_reach(const ContactLayout *layout);
+
 // The boxes of the list's tetrahedra at these positions, into boxes (cell_count); others are
 // left alone.
 void contact_candidates_bound(const ContactCandidateList *list, const ContactLayout *layout,

@@ -296,7 +296,8 @@ ContactSystem *fem_effect_contact_system(void *effect) {
 }
 
 double fem_effect_contact_reach(const void *effect) {
-  return ((const Contact *)effect)->reach;
+  const Contact *contact = effect;
+  return fmin(contact->reach, contact_system_least_reach(contact->system));
 }
 
 Status fem_effect_contact_evaluate(const FemSystem *system, const FemState *state,

@@ -9,7 +9,7 @@
 
 // The contact system of the effect that fem_system_effect(system, &fem_effect_contact) returned; borrowed.
 ContactSystem *fem_effect_contact_system(void *effect);
-// Pairs of cells closer than this are laid out in the matrix ahead [m].
+// Pairs of cells closer than this are laid out in the matrix ahead, where effects were renewed [m].
 double fem_effect_contact_reach(const void *effect);
 
 // Contact at a state (contact_evaluate). NULL: the scene has none.

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "fem/effect/contact/contact.h"
 #include "replays.h"
 
 enum { MOST_STEPS = 1000 };
@@ -143,6 +144,27 @@ START_TEST(what_may_meet_is_looked_for_where_bodies_have_moved) {
 }
 END_TEST
 
+static double reach_with(const char *margin, const char *self) {
+  SceneRun scene;
+  FemSystem system;
+  scene_open(&scene, "gradient_motion", (const char *const[]){margin, self, NULL});
+  ck_assert_ok(fem_system_create(&system, &scene.model));
+  double reach = fem_effect_contact_reach(fem_system_effect(&system, &fem_effect_contact));
+  fem_system_destroy(&system);
+  scene_close(&scene);
+  return reach;
+}
+
+// Half of the margin may be used up when candidates are asked for, and self-contact has half the margin.
+START_TEST(nothing_is_laid_out_ahead_beyond_what_was_searched) {
+  double usual = reach_with("contact.margin=1", NULL);
+  ck_assert_double_gt(usual, 4e-3);
+  ck_assert_double_lt(usual, 0.1);
+  ck_assert_double_eq(reach_with("contact.margin=4e-3", NULL), 2e-3);
+  ck_assert_double_eq(reach_with("contact.margin=4e-3", "bodies.lower.self_contact=true"), 1e-3);
+}
+END_TEST
+
 START_TEST(the_residual_that_is_told_is_that_of_the_worst_system) {
   const Asked asked = asked_of(_i);
   FemReplaySteps steps;
@@ -197,6 +219,7 @@ int main(void) {
   TCase *test_case = tcase_create("gradient_factors");
   tcase_add_loop_test(test_case, goals_share_a_factor_which_serves_many_steps, 0, SCENE_COUNT);
   tcase_add_loop_test(test_case, what_may_meet_is_looked_for_where_bodies_have_moved, 0, SCENE_COUNT);
+  tcase_add_test(test_case, nothing_is_laid_out_ahead_beyond_what_was_searched);
   tcase_add_loop_test(test_case, the_residual_that_is_told_is_that_of_the_worst_system, 0, SCENE_COUNT);
   tcase_add_loop_test(test_case, an_earlier_factor_that_does_not_serve_is_made_anew, 0, SCENE_COUNT);
   tcase_add_loop_test(test_case, a_step_is_balanced_also_with_a_poor_matrix, SLIDE, DAMPED + 1);
