@@ -55,6 +55,7 @@ OverlapBatch overlap_ops_part(const OverlapBatch *batch, int begin, int count) {
                         .flags = batch->flags ? batch->flags + begin : NULL,
                         .centroid = batch->centroid ? batch->centroid + 3 * (size_t)begin : NULL,
                         .doubt = batch->doubt ? batch->doubt + begin : NULL,
+                        .doubt_gradient = batch->doubt_gradient ? batch->doubt_gradient + at : NULL,
                         .origins = part_of(&batch->origins, (size_t)begin),
                         .numbers = batch->numbers ? batch->numbers + begin : NULL};
 }

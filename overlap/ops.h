@@ -32,7 +32,7 @@ typedef enum OverlapFlag {
   OVERLAP_ENCLOSED = 1 << 3, // one tetrahedron lies wholly inside the other: ∇V pushes nothing apart
   OVERLAP_BLENDED = 1 << 4,  // answered partly by a more careful model
   OVERLAP_NET = 1 << 5,      // a TetrahedronPairNet's volume is part of the answer
-  OVERLAP_BEYOND = 1 << 6,   // the pair is unlike those that network was trained on
+  OVERLAP_BEYOND = 1 << 6,   // the pair is unlike those that the model was made for
   OVERLAP_UNSOUND = 1 << 7,  // the model's V was negative, and became 0, or is above the smaller tetrahedron
 } OverlapFlag;
 
@@ -53,6 +53,7 @@ typedef struct OverlapBatch {
   unsigned *flags;        // out, or NULL: OverlapFlag (pair_count)
   double *centroid;       // out, or NULL: x̄ of the intersection [m] (pair_count, 3)
   double *doubt;          // out, or NULL: how far V may be off [m³]  (pair_count); where it gives_doubt
+  double *doubt_gradient; // out, or NULL: its derivative (pair_count, 2, 4, 3); where it gives_doubt_gradient
   OverlapOrigins origins; // for models that want them
   const int *numbers;     // what messages call the pairs            (pair_count); NULL: their places
 } OverlapBatch;
@@ -134,8 +135,11 @@ typedef struct OverlapOps {
   const OverlapTraining *training;
   // Whether it wants to know the origins of pairs; NULL: no.
   bool (*wants_origins)(const void *self);
-  // Batches may want its doubt.
-  bool gives_doubt;
+  // Batches may want its doubt, and with ∇V the doubt's gradient.
+  bool gives_doubt, gives_doubt_gradient;
+  // The pairs that it was made for, in measures of the pairs as they stand; NULL: it does not say, or sees to
+  // it itself.
+  const struct OverlapTpnRange *range;
 } OverlapOps;
 
 // A capability that a model has however it was made.

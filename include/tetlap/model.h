@@ -45,6 +45,7 @@ enum {
                                      that the program needs no test of its own before it asks */
   TETLAP_MODEL_ORIGINS = 1 << 5,  /* not an array: it wants to be told where a scene's pairs are from */
   TETLAP_MODEL_CURVATURE = 1 << 6, /* not an array: `pull_back` takes `by_gradient` */
+  TETLAP_MODEL_DOUBT_GRADIENT = 1 << 7, /* of the doubt, by the pairs */
 };
 
 typedef struct TetlapModelBatch {
@@ -61,6 +62,7 @@ typedef struct TetlapModelBatch {
   const int32_t *elements; /* numbers of the two, as frames count them (count, 2) */
   const int32_t *bodies;   /* in the order of the scene                (count, 2) */
   const double *rest;      /* the tetrahedra's volumes at rest [m^3]   (count, 2) */
+  double *doubt_gradient;  /* [m^2] (count, 2, 4, 3), or NULL; of an infinite doubt anything */
 } TetlapModelBatch;
 
 /* Of a number g that follows V, the centroid c and dV/dx: its derivative by the pairs,
@@ -87,8 +89,12 @@ typedef struct TetlapModel {
   int (*evaluate)(void *self, const TetlapModelBatch *batch, char *message, size_t size);
   void (*close)(void *self); /* or NULL */
   /* Or NULL. dV/dx is taken from it where the model has no array of it. Like `evaluate`. A struct whose `size`
-   * ends before it, as an older header has it, is as good as one with NULL. */
+   * ends before it, as an older header has it, is as good as one with NULL; likewise below. */
   int (*pull_back)(void *self, const TetlapModelPull *pull, char *message, size_t size);
+  /* NULL, or the pairs that it was made for, as long as the library is loaded; in metres:
+   *   "radius 0.1 to 2, first volume 0.01 to 1, second volume 0.01 to 1, overlap to 0.3"
+   * The radius is the root mean square distance of the eight vertices from the first one's centroid. */
+  const char *range;
 } TetlapModel;
 
 /* The one function that a library exports. Never NULL; the struct lasts as long as the library is loaded. */

@@ -225,4 +225,6 @@ extern "C" const OverlapOps overlap_cgal_ops = {
     nullptr,            // training
     nullptr,            // wants_origins
     false,              // gives_doubt
+    false,              // gives_doubt_gradient
+    nullptr,            // range
 };

@@ -12,13 +12,15 @@
 #include "overlap/foreign/request.h"
 #include "overlap/pair/sizes.h"
 #include "overlap/source.h"
+#include "overlap/tpn/range.h"
 
 typedef struct Foreign {
   OverlapOps ops;
   char name[128];
   OverlapUnsound unsound;
   OverlapForeignPort port;
-  pthread_mutex_t lock; // of the request, and of the port
+  OverlapTpnRange range; // where `ops` says so
+  pthread_mutex_t lock;  // of the request, and of the port
   OverlapForeignRequest request;
 } Foreign;
 
@@ -26,6 +28,7 @@ static const unsigned PAIRS = 1u << OVERLAP_FOREIGN_PAIRS, VOLUME = 1u << OVERLA
                       GRADIENT = 1u << OVERLAP_FOREIGN_GRADIENT, CENTROID = 1u << OVERLAP_FOREIGN_CENTROID,
                       REST = 1u << OVERLAP_FOREIGN_REST, BY_VOLUME = 1u << OVERLAP_FOREIGN_BY_VOLUME,
                       BY_CENTROID = 1u << OVERLAP_FOREIGN_BY_CENTROID, DOUBT = 1u << OVERLAP_FOREIGN_DOUBT,
+                      DOUBT_GRADIENT = 1u << OVERLAP_FOREIGN_DOUBT_GRADIENT,
                       BY_GRADIENT = 1u << OVERLAP_FOREIGN_BY_GRADIENT, SLOPE = 1u << OVERLAP_FOREIGN_SLOPE;
 
 static void destroy(void *self) {
@@ -99,6 +102,28 @@ static Status check_doubt(const Foreign *foreign, double doubt, int i) {
                            foreign->name, i, doubt);
 }
 
+// The doubt of a pair, with its gradient.
+static Status give_doubt(const Foreign *foreign, const OverlapBatch *batch, size_t at, int number) {
+  enum { SIZE = OVERLAP_PAIR_SIZE };
+  const double doubt = foreign->request.arrays[OVERLAP_FOREIGN_DOUBT][at];
+  batch->doubt[at] = doubt;
+  TRY(check_doubt(foreign, doubt, number));
+  if (!batch->doubt_gradient) return STATUS_OK;
+  double *gradient = batch->doubt_gradient + SIZE * at;
+  memset(gradient, 0, SIZE * sizeof *gradient);
+  if (!isfinite(doubt)) return STATUS_OK;
+  memcpy(gradient, foreign->request.arrays[OVERLAP_FOREIGN_DOUBT_GRADIENT] + SIZE * at,
+         SIZE * sizeof *gradient);
+  return are_finite(SIZE, gradient) ? STATUS_OK
+                                    : fail_not_finite(foreign, number, "the gradient of its doubt");
+}
+
+// Whether the pair is within the range that the model declares.
+static bool is_within(const Foreign *foreign, const double *pair, double volume) {
+  const OverlapTpnRange *range = foreign->ops.range;
+  return !range || (overlap_tpn_range_weight(range, pair, NULL, NULL) >= 1 && volume <= range->overlap);
+}
+
 static int number_of(const OverlapBatch *batch, size_t at) {
   return batch->numbers ? batch->numbers[at] : (int)at;
 }
@@ -123,6 +148,7 @@ static Status give_not_finite(const Foreign *foreign, const OverlapBatch *batch,
   overlap_ops_write_nothing(&answer);
   *answer.flags = OVERLAP_UNSOUND;
   if (batch->doubt) batch->doubt[at] = INFINITY;
+  if (batch->doubt_gradient) memset(batch->doubt_gradient + 24 * at, 0, 24 * sizeof *batch->doubt_gradient);
   return STATUS_OK;
 }
 
@@ -132,7 +158,7 @@ static Status give_unsound(const Foreign *foreign, double volume, double smaller
                        "overlap model '%s': pair %d: its volume is %g m³, expected 0 to that of the smaller "
                        "tetrahedron, %g m³",
                        foreign->name, i, volume, smaller);
-  *flags = OVERLAP_UNSOUND;
+  *flags |= OVERLAP_UNSOUND;
   return STATUS_OK;
 }
 
@@ -143,14 +169,13 @@ static Status give(const Foreign *foreign, const OverlapBatch *batch, size_t at)
   double *const *arrays = foreign->request.arrays;
   const char *wrong = find_not_finite(foreign, batch, at);
   if (wrong) return give_not_finite(foreign, batch, at, wrong);
-  if (batch->doubt) {
-    batch->doubt[at] = arrays[OVERLAP_FOREIGN_DOUBT][at];
-    TRY(check_doubt(foreign, batch->doubt[at], number_of(batch, at)));
-  }
+  if (batch->doubt) TRY(give_doubt(foreign, batch, at, number_of(batch, at)));
   const double volume = arrays[OVERLAP_FOREIGN_VOLUME][at];
   const double smaller = overlap_sizes_smaller(batch->pairs + OVERLAP_PAIR_SIZE * at);
   *answer.flags = 0;
   if (volume == 0 && asks_for_all(foreign)) *answer.flags = smaller > 0 ? OVERLAP_DISJOINT : OVERLAP_FLAT;
+  if (!(*answer.flags) && !is_within(foreign, batch->pairs + OVERLAP_PAIR_SIZE * at, volume))
+    *answer.flags = OVERLAP_BEYOND;
   if (volume < 0 || volume > smaller * (1 + 1e-9))
     TRY(give_unsound(foreign, volume, smaller, number_of(batch, at), answer.flags));
   if (!(volume > 0)) {
@@ -191,7 +216,8 @@ static Status eval_hessian(Foreign *foreign, const OverlapBatch *batch) {
 static Status eval(Foreign *foreign, const OverlapBatch *batch) {
   const bool tells = wants_origins(foreign) && batch->origins.elements;
   const unsigned wanted = PAIRS | VOLUME | (batch->gradient ? GRADIENT : 0) |
-                          (batch->centroid ? CENTROID : 0) | (batch->doubt ? DOUBT : 0) | (tells ? REST : 0);
+                          (batch->centroid ? CENTROID : 0) | (batch->doubt ? DOUBT : 0) |
+                          (batch->doubt_gradient ? DOUBT_GRADIENT : 0) | (tells ? REST : 0);
   if (batch->pair_count == 0) return STATUS_OK;
   TRY(overlap_foreign_request_reserve(&foreign->request, (size_t)batch->pair_count, wanted));
   take(foreign, batch->pair_count, batch->pairs);
@@ -312,6 +338,19 @@ static Status open_port(OverlapForeignPort *port, const char *word) {
   return status_fail(STATUS_INPUT, "%s: names no model of yours", word);
 }
 
+static Status read_range(Foreign *foreign) {
+  const char *text = foreign->port.range;
+  if (!text) return STATUS_OK;
+  if (!overlap_tpn_range_parse(text, &foreign->range))
+    return status_fail(
+        STATUS_INPUT,
+        "%s: its range is '%.200s', expected 'radius A to B, first volume A to B, second volume A "
+        "to B, overlap to B' with 0 <= A <= B, 0 < B",
+        foreign->name, text);
+  foreign->ops.range = &foreign->range;
+  return STATUS_OK;
+}
+
 Status overlap_foreign_create(void **self, const OverlapOps **ops, const char *word, OverlapUnsound unsound) {
   Foreign *foreign = memory_zeroed(1, sizeof *foreign);
   if (!foreign) return status_no_memory("a model of yours");
@@ -321,12 +360,15 @@ Status overlap_foreign_create(void **self, const OverlapOps **ops, const char *w
   foreign->ops = standard;
   foreign->ops.name = foreign->name;
   Status status = open_port(&foreign->port, word);
+  if (!status) status = read_range(foreign);
   if (status) {
     destroy(foreign);
     return status;
   }
   if (foreign->port.gives & TETLAP_MODEL_LOGIT) foreign->ops.eval_logits = eval_logits;
   foreign->ops.gives_doubt = (foreign->port.gives & TETLAP_MODEL_DOUBT) != 0;
+  foreign->ops.gives_doubt_gradient =
+      foreign->ops.gives_doubt && (foreign->port.gives & TETLAP_MODEL_DOUBT_GRADIENT);
   if (foreign->ops.gives_doubt) foreign->ops.eval_bounds = eval_bounds;
   if (foreign->port.pull) foreign->ops.eval_pull = eval_pull;
   *self = foreign, *ops = &foreign->ops;

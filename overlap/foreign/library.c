@@ -50,7 +50,11 @@ static Status pull(void *self, const TetlapModelPull *asked) {
 static const size_t FIRST_SIZE = offsetof(TetlapModel, pull_back);
 
 static bool has_pull(const TetlapModel *model) {
-  return model->size >= sizeof *model && model->pull_back;
+  return model->size >= offsetof(TetlapModel, range) && model->pull_back;
+}
+
+static const char *range_of(const TetlapModel *model) {
+  return model->size >= sizeof *model ? model->range : NULL;
 }
 
 // A path without a slash would be looked for where the system's libraries are.
@@ -120,6 +124,7 @@ Status overlap_foreign_library_open(OverlapForeignPort *port, const char *path) 
   }
   *port = (OverlapForeignPort){.self = library,
                                .gives = library->model->gives,
+                               .range = range_of(library->model),
                                .ask = ask,
                                .pull = has_pull(library->model) ? pull : NULL,
                                .close = close_library};

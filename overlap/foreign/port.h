@@ -8,8 +8,9 @@
 #include <tetlap/model.h>
 
 typedef struct OverlapForeignPort {
-  void *self;     // owned
-  uint32_t gives; // TETLAP_MODEL_…
+  void *self;        // owned
+  uint32_t gives;    // TETLAP_MODEL_…
+  const char *range; // as TetlapModel has it, or NULL; as long as the port is open
   // Fills what the batch wants. STATUS_SOLVER: the model failed; the message has its own words.
   // STATUS_DEVICE: it is no longer there. STATUS_INTERRUPTED. One call at a time.
   Status (*ask)(void *self, const TetlapModelBatch *batch);

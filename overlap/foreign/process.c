@@ -25,7 +25,7 @@
 #include "base/machine/interrupt.h"
 #include "base/memory.h"
 
-enum { HELLO = 1, EVALUATE = 2, VERSION = 1, WORDS = 4, PAIR_BYTES = 432, LEAST_CAPACITY = 1024 };
+enum { HELLO = 1, EVALUATE = 2, VERSION = 1, WORDS = 4, PAIR_BYTES = 624, LEAST_CAPACITY = 1024 };
 enum { SOCKET_FOR_IT = 3, MEMORY_FOR_IT = 4 };
 static const double SECONDS_BETWEEN_LOOKS = 0.1; // whether somebody wants the program to end
 static const double SECONDS_TO_END = 2;          // once its socket is closed, and to answer after a signal
@@ -37,6 +37,7 @@ typedef struct Process {
   int socket, memory;
   double limit;  // of a reply [s]
   bool is_known; // it has said what it is
+  char *range;   // or NULL
   char *map;
   size_t capacity; // pairs
 } Process;
@@ -92,7 +93,7 @@ static void close_process(void *self) {
   disconnect(process);
   if (process->memory >= 0) close(process->memory);
   if (!reap(process, SECONDS_TO_END, &how)) stop(process);
-  memory_free(process->name);
+  memory_free(process->name), memory_free(process->range);
   memory_free(process);
 }
 
@@ -218,7 +219,7 @@ typedef struct Part {
   size_t place, width; // bytes before it and numbers of it, a pair
 } Part;
 static const Part VOLUME = {192, 1}, GRADIENT = {200, 24}, CENTROID = {392, 3}, LOGIT = {416, 1},
-                  DOUBT = {424, 1};
+                  DOUBT = {424, 1}, DOUBT_GRADIENT = {432, 24};
 
 // NaN, so that what the model leaves unwritten is no answer.
 static void unset(const Process *process, Part part, size_t count, const double *array) {
@@ -240,9 +241,11 @@ static Status ask(void *self, const TetlapModelBatch *batch) {
   unset(process, CENTROID, batch->count, batch->centroid);
   unset(process, LOGIT, batch->count, batch->logit);
   unset(process, DOUBT, batch->count, batch->doubt);
+  unset(process, DOUBT_GRADIENT, batch->count, batch->doubt_gradient);
   const uint64_t wants = (batch->gradient ? TETLAP_MODEL_GRADIENT : 0u) |
                          (batch->centroid ? TETLAP_MODEL_CENTROID : 0u) |
-                         (batch->logit ? TETLAP_MODEL_LOGIT : 0u) | (batch->doubt ? TETLAP_MODEL_DOUBT : 0u);
+                         (batch->logit ? TETLAP_MODEL_LOGIT : 0u) | (batch->doubt ? TETLAP_MODEL_DOUBT : 0u) |
+                         (batch->doubt_gradient ? TETLAP_MODEL_DOUBT_GRADIENT : 0u);
   const uint64_t request[WORDS] = {EVALUATE, batch->count, process->capacity, wants};
   TRY(exchange(process, request, reply, text, sizeof text));
   if (reply[0]) return fail_told(process, STATUS_SOLVER, text);
@@ -251,12 +254,13 @@ static Status ask(void *self, const TetlapModelBatch *batch) {
   take(process, CENTROID, batch->count, batch->centroid);
   take(process, LOGIT, batch->count, batch->logit);
   take(process, DOUBT, batch->count, batch->doubt);
+  take(process, DOUBT_GRADIENT, batch->count, batch->doubt_gradient);
   return STATUS_OK;
 }
 
 // What the protocol knows of a model.
 static const uint32_t ARRAYS_OF_IT = TETLAP_MODEL_GRADIENT | TETLAP_MODEL_CENTROID | TETLAP_MODEL_LOGIT |
-                                     TETLAP_MODEL_DOUBT | TETLAP_MODEL_DISJOINT;
+                                     TETLAP_MODEL_DOUBT | TETLAP_MODEL_DISJOINT | TETLAP_MODEL_DOUBT_GRADIENT;
 
 static Status greet(Process *process, OverlapForeignPort *port) {
   const uint64_t request[WORDS] = {HELLO, VERSION, process->capacity, 0};
@@ -265,8 +269,14 @@ static Status greet(Process *process, OverlapForeignPort *port) {
   TRY(exchange(process, request, reply, text, sizeof text));
   if (reply[0]) return fail_told(process, STATUS_INPUT, text);
   process->is_known = true;
-  *port = (OverlapForeignPort){
-      .self = process, .gives = (uint32_t)reply[2] & ARRAYS_OF_IT, .ask = ask, .close = close_process};
+  const char *range = strchr(text, '\n');
+  if (range && !(process->range = memory_copy(range + 1, strlen(range), 1)))
+    return status_no_memory("a model's process");
+  *port = (OverlapForeignPort){.self = process,
+                               .gives = (uint32_t)reply[2] & ARRAYS_OF_IT,
+                               .range = process->range,
+                               .ask = ask,
+                               .close = close_process};
   return STATUS_OK;
 }
 

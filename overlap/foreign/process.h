@@ -9,14 +9,16 @@
 //   request   what, count, capacity, wants        reply   failed, length of the text [bytes], gives, 0
 //
 //   what = 1, count = 1 (the version of this protocol): what is the model?
-//            gives: bits TETLAP_MODEL_… of include/tetlap/model.h; text: its name
+//            gives: bits TETLAP_MODEL_… of include/tetlap/model.h; text: its name;
+//            behind it, where it has one, a line with its range as TetlapModel has it
 //   what = 2: evaluate `count` pairs, 1 or more; wants: the bits that are asked for besides V
 //
 // failed: 0, or 1 with the reason as text; after that the program ends. The memory has room for `capacity`
-// pairs, C below, and grows: where C is another than before, it must be mapped anew, 432 C bytes of it. The
-// arrays in it are those of TetlapModelBatch, doubles, at these bytes:
+// pairs, C below, and grows: where C is another than before, it must be mapped anew, 624 C bytes of it, or
+// 432 C without a doubt_gradient. The arrays in it are those of TetlapModelBatch, doubles, at these bytes:
 //
 //   pairs 0    volume 192 C    gradient 200 C    centroid 392 C    logit 416 C    doubt 424 C
+//   doubt_gradient 432 C
 //
 // The arrays that are wanted are NaN before a request. When the socket is closed the process ends. What it
 // prints goes to the program's standard error.

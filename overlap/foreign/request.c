@@ -18,6 +18,7 @@ static const struct {
     [OVERLAP_FOREIGN_CENTROID] = {"centroid", 3},
     [OVERLAP_FOREIGN_LOGIT] = {"logit", 1},
     [OVERLAP_FOREIGN_DOUBT] = {"doubt", 1},
+    [OVERLAP_FOREIGN_DOUBT_GRADIENT] = {"doubt_gradient", 24},
     [OVERLAP_FOREIGN_REST] = {"rest", 2},
     [OVERLAP_FOREIGN_BY_VOLUME] = {"by_volume", 1},
     [OVERLAP_FOREIGN_BY_CENTROID] = {"by_centroid", 3},
@@ -32,7 +33,8 @@ static const unsigned char FENCE_BYTE = 0xA5;
 // What a model fills.
 static const unsigned OUTPUTS = 1u << OVERLAP_FOREIGN_VOLUME | 1u << OVERLAP_FOREIGN_GRADIENT |
                                 1u << OVERLAP_FOREIGN_CENTROID | 1u << OVERLAP_FOREIGN_LOGIT |
-                                1u << OVERLAP_FOREIGN_DOUBT | 1u << OVERLAP_FOREIGN_SLOPE;
+                                1u << OVERLAP_FOREIGN_DOUBT | 1u << OVERLAP_FOREIGN_DOUBT_GRADIENT |
+                                1u << OVERLAP_FOREIGN_SLOPE;
 
 void overlap_foreign_request_destroy(OverlapForeignRequest *request) {
   for (int a = 0; a < ARRAYS; a++) memory_free(request->arrays[a]);
@@ -129,7 +131,8 @@ Status overlap_foreign_request_ask(OverlapForeignRequest *request, const Overlap
                          .doubt = arrays[OVERLAP_FOREIGN_DOUBT],
                          .elements = tells ? request->elements : NULL,
                          .bodies = tells ? request->bodies : NULL,
-                         .rest = arrays[OVERLAP_FOREIGN_REST]};
+                         .rest = arrays[OVERLAP_FOREIGN_REST],
+                         .doubt_gradient = arrays[OVERLAP_FOREIGN_DOUBT_GRADIENT]};
   TRY(port->ask(port->self, &it));
   TRY(check_fences(request, wanted, name));
   return pulls ? pull_gradient(request, port, name) : STATUS_OK;

@@ -24,8 +24,9 @@ static Status lay_out(OverlapWrap *wrap, const OverlapBatch *batch, OverlapBatch
                            batch->hessian ? SQUARE : 0,
                            batch->centroid ? 3 : 0,
                            batch->doubt ? 1 : 0,
+                           batch->doubt_gradient ? SIZE : 0,
                            tells ? 2 : 0};
-  enum { PAIRS, VOLUME, GRADIENT, HESSIAN, CENTROID, DOUBT, REST, ARRAYS };
+  enum { PAIRS, VOLUME, GRADIENT, HESSIAN, CENTROID, DOUBT, DOUBT_GRADIENT, REST, ARRAYS };
   double *arrays[ARRAYS];
   size_t sum = 0;
   for (int a = 0; a < ARRAYS; a++) sum += widths[a] * n;
@@ -39,6 +40,7 @@ static Status lay_out(OverlapWrap *wrap, const OverlapBatch *batch, OverlapBatch
                           .hessian = arrays[HESSIAN],
                           .centroid = arrays[CENTROID],
                           .doubt = arrays[DOUBT],
+                          .doubt_gradient = arrays[DOUBT_GRADIENT],
                           .flags = (unsigned *)wrap->integers,
                           .numbers = wrap->integers + n};
   if (tells) asked->origins = (OverlapOrigins){wrap->integers + 2 * n, wrap->integers + 4 * n, arrays[REST]};
@@ -75,14 +77,17 @@ static void take_centroid(const double volumes[2], const double *first, const do
     centroid[c] = sum > 0 ? (volumes[0] * first[c] + volumes[1] * second[c]) / sum : 0;
 }
 
+static void take_gradient(const double *gradients, size_t n, size_t i, double *gradient) {
+  for (size_t r = 0; r < SIZE; r++)
+    gradient[r] = (gradients[SIZE * i + r] + gradients[SIZE * (n + i) + (size_t)across((int)r)]) / 2;
+}
+
 static void take(const OverlapBatch *asked, size_t n, size_t i, const OverlapAnswer *answer) {
   const double volumes[2] = {asked->volume[i], asked->volume[n + i]};
   *answer->volume = (volumes[0] + volumes[1]) / 2;
   *answer->flags = asked->flags[i] | asked->flags[n + i];
   if (*answer->volume > 0) *answer->flags &= ~(unsigned)OVERLAP_DISJOINT;
-  for (size_t r = 0; r < SIZE && answer->gradient; r++)
-    answer->gradient[r] =
-        (asked->gradient[SIZE * i + r] + asked->gradient[SIZE * (n + i) + (size_t)across((int)r)]) / 2;
+  if (answer->gradient) take_gradient(asked->gradient, n, i, answer->gradient);
   for (size_t r = 0; r < SIZE && answer->hessian; r++)
     for (size_t c = 0; c < SIZE; c++)
       answer->hessian[SIZE * r + c] =
@@ -105,6 +110,7 @@ static Status eval(OverlapWrap *wrap, const OverlapBatch *batch) {
     OverlapAnswer answer = overlap_ops_answer(batch, (int)i, &flags);
     take(&asked, n, i, &answer);
     if (batch->doubt) batch->doubt[i] = (asked.doubt[i] + asked.doubt[n + i]) / 2;
+    if (batch->doubt_gradient) take_gradient(asked.doubt_gradient, n, i, batch->doubt_gradient + SIZE * i);
   }
   return STATUS_OK;
 }

@@ -38,7 +38,7 @@ typedef struct Asked {
 
 // Places in the scratch memory for all pairs of the batch; the first `n` numbers are V by clipping.
 static Status lay_out(OverlapWrap *wrap, const OverlapBatch *batch, Asked *asked) {
-  enum { CLIPPED, PAIRS, VOLUME, GRADIENT, HESSIAN, CENTROID, DOUBT, REST, ARRAYS };
+  enum { CLIPPED, PAIRS, VOLUME, GRADIENT, HESSIAN, CENTROID, DOUBT, DOUBT_GRADIENT, REST, ARRAYS };
   const size_t n = (size_t)batch->pair_count;
   const bool tells = batch->origins.elements != NULL;
   const size_t widths[ARRAYS] = {1,
@@ -48,6 +48,7 @@ static Status lay_out(OverlapWrap *wrap, const OverlapBatch *batch, Asked *asked
                                  batch->hessian ? SQUARE : 0,
                                  batch->centroid ? 3 : 0,
                                  batch->doubt ? 1 : 0,
+                                 batch->doubt_gradient ? SIZE : 0,
                                  tells ? 2 : 0};
   double *arrays[ARRAYS];
   size_t sum = 0;
@@ -62,6 +63,7 @@ static Status lay_out(OverlapWrap *wrap, const OverlapBatch *batch, Asked *asked
                                 .hessian = arrays[HESSIAN],
                                 .centroid = arrays[CENTROID],
                                 .doubt = arrays[DOUBT],
+                                .doubt_gradient = arrays[DOUBT_GRADIENT],
                                 .flags = (unsigned *)wrap->integers + n,
                                 .numbers = wrap->integers + 2 * n};
   if (tells)
@@ -99,6 +101,8 @@ static void choose(OverlapWrap *wrap, const OverlapBatch *batch, Asked *asked) {
     else
       append(asked, batch, i);
     if (*answer.flags && batch->doubt) batch->doubt[i] = 0;
+    if (*answer.flags && batch->doubt_gradient)
+      memset(batch->doubt_gradient + SIZE * (ptrdiff_t)i, 0, SIZE * sizeof *batch->doubt_gradient);
   }
 }
 
@@ -121,6 +125,9 @@ static Status eval(OverlapWrap *wrap, const OverlapBatch *batch) {
     copy(from.hessian, to.hessian, SQUARE);
     copy(from.centroid, to.centroid, 3);
     if (batch->doubt) batch->doubt[asked.rows[k]] = asked.batch.doubt[k];
+    if (batch->doubt_gradient)
+      copy(asked.batch.doubt_gradient + SIZE * (ptrdiff_t)k,
+           batch->doubt_gradient + SIZE * (ptrdiff_t)asked.rows[k], SIZE);
   }
   return STATUS_OK;
 }

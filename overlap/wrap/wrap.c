@@ -73,12 +73,13 @@ static bool has_ghosts(const void *self) {
 
 static bool has_gradient(const void *self) {
   const OverlapWrap *wrap = self;
-  return !wrap->kind->lacks_gradient && overlap_model_has_gradient(&wrap->inner);
+  return overlap_model_has_gradient(&wrap->inner) &&
+         (!wrap->kind->has_gradient || wrap->kind->has_gradient(&wrap->inner));
 }
 
 static bool has_hessian(const void *self) {
   const OverlapWrap *wrap = self;
-  return has_gradient(self) && overlap_model_has_hessian(&wrap->inner);
+  return !wrap->kind->lacks_hessian && overlap_model_has_hessian(&wrap->inner);
 }
 
 static bool has_centroid(const void *self) {
@@ -128,6 +129,8 @@ static void fill(OverlapWrap *wrap) {
       .lacks_scale = inner->lacks_scale,
       .weights = inner->weights,
       .gives_doubt = kind->keeps_doubt && inner->gives_doubt,
+      .gives_doubt_gradient = kind->keeps_doubt && inner->gives_doubt_gradient,
+      .range = kind->keeps_doubt ? inner->range : NULL,
       .eval_logits = inner->eval_logits ? eval_logits : NULL,
       .eval_bounds = inner->eval_bounds ? eval_bounds : NULL,
       .eval_pull = kind->eval_pull && inner->eval_pull ? eval_pull : NULL,

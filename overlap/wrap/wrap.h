@@ -29,8 +29,9 @@ typedef struct OverlapWrapKind {
   Status (*eval_logits)(const OverlapWrap *wrap, int count, const double *pairs,
                         double *logits); // NULL: the inner model's
   bool answers_disjoint;                 // by exactly 0
-  bool keeps_doubt;                      // the inner model's doubt is that of what comes out
-  bool lacks_gradient;
+  bool keeps_doubt;                      // the inner model's doubt and range are those of what comes out
+  bool (*has_gradient)(const OverlapModel *inner); // NULL: where the inner model has one
+  bool lacks_hessian;
   enum {
     OVERLAP_WRAP_INNER_CENTROID, // that of the inner model; its own where the inner model has one of its own
     OVERLAP_WRAP_MIXED_CENTROID, // its own, where the inner model has one of either kind

@@ -11,6 +11,7 @@ import numpy as np
 import torch
 
 import tetlap
+from tetlap.serve import Model
 
 ROOT = Path(os.environ["TETLAP_SOURCE_DIR"])
 sys.path.insert(0, str(ROOT / "examples" / "models"))
@@ -26,6 +27,31 @@ def some_pairs(count):
     flat[..., 2] = 1e-3 * random.normal(size=flat.shape[:-1])
     x[2, :, 0, 3] = x[2, :, 0, :3].mean(1) + 1e-7 * random.normal(size=(count, 3))
     return 0.01 * x.reshape(-1, 2, 4, 3)
+
+
+class Doubtful(torch.nn.Module):
+    """V = w Σ x², with a doubt that follows the first coordinate alone."""
+
+    range = "radius 0 to 9, first volume 0 to 9, second volume 0 to 9, overlap to 9"
+
+    def __init__(self):
+        super().__init__()
+        self.weight = torch.nn.Parameter(torch.tensor(0.5, dtype=torch.float64))
+
+    def forward(self, pairs):
+        return {"volume": self.weight * (pairs**2).sum((1, 2, 3)), "doubt": pairs[:, 0, 0, 0] ** 2}
+
+
+class Module(unittest.TestCase):
+    def test_the_gradients_of_volume_and_doubt_come_by_autograd(self):
+        model, pairs = Model(Doubtful, "it"), some_pairs(5)
+        self.assertEqual(model.gives, 1 | 8 | 128)
+        self.assertTrue(model.range.startswith("radius 0 to 9"))
+        answer, slope = model(pairs, ("volume", "gradient", "doubt_gradient")), np.zeros_like(pairs)
+        slope[:, 0, 0, 0] = 2 * pairs[:, 0, 0, 0]
+        np.testing.assert_allclose(answer["gradient"], pairs)
+        np.testing.assert_allclose(answer["doubt_gradient"], slope)
+        self.assertNotIn("doubt_gradient", model(pairs, ("gradient",)))
 
 
 class Geo(unittest.TestCase):

@@ -11,9 +11,11 @@ A model is called with pairs, float64 (n, 2, 4, 3) [m], and returns V (n) [m³],
     gradient  (n, 2, 4, 3)    dV/dx [m²]
     logit     (n)             of "the two intersect": > 0 yes
     doubt     (n)             how far V may be off [m³]
+    doubt_gradient (n, 2, 4, 3)  its derivative [m²]
 
-It may be any callable, which gets a NumPy array, or a torch.nn.Module, which gets a tensor and whose gradient comes by autograd where it
-gives none; a module is put into evaluation mode. A class is called first, without arguments.
+It may be any callable, which gets a NumPy array, or a torch.nn.Module, which gets a tensor and whose gradients come by autograd where it
+gives none; a module is put into evaluation mode. A class is called first, without arguments. Its attribute `range`, a text as in
+include/tetlap/model.h, says what pairs it was made for.
 
 A word that ends in .onnx is a network that ONNX Runtime runs, on one thread: one input, float or double, of any number of pairs (n, 2, 4, 3),
 and outputs with the names above; a single output is V whatever its name.
@@ -36,10 +38,10 @@ except ImportError as error:  # told when the program asks
 
 _HELLO, _EVALUATE, _VERSION = 1, 2, 1
 _WORDS = struct.Struct("=4Q")
-_PAIR_BYTES = 432
+_PAIR_BYTES = 624
 # Of an array: its bit in what is given or wanted, its place in the memory [bytes a pair], its numbers a pair.
 _ARRAYS = {"volume": (0, 192, ()), "gradient": (1, 200, (2, 4, 3)), "centroid": (2, 392, (3,)), "logit": (4, 416, ()),
-           "doubt": (8, 424, ())}
+           "doubt": (8, 424, ()), "doubt_gradient": (128, 432, (2, 4, 3))}
 # Two tetrahedra that share a part of both.
 _PROBE = [[[[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0.1, 0.1, 0.1], [1.1, 0.1, 0.1], [0.1, 1.1, 0.1], [0.1, 0.1, 1.1]]]]
 
@@ -60,9 +62,13 @@ class Model:
         torch = sys.modules.get("torch")
         self._module = function if torch is not None and isinstance(function, torch.nn.Module) else None
         self._function = function
+        self.range = getattr(function, "range", None)
+        if self.range is not None and not isinstance(self.range, str):
+            raise ModelError(f"the range of {name} is {type(self.range).__name__}, expected a text such as 'radius 0.1 to 2, first volume "
+                             "0.01 to 1, second volume 0.01 to 1, overlap to 0.3'")
         if self._module is not None:
             self._module.eval()  # else dropout and batch normalisation would make V random
-        answer = self(np.array(_PROBE, dtype=np.float64), ("gradient",) if self._module is not None else ())
+        answer = self(np.array(_PROBE, dtype=np.float64), ("gradient", "doubt_gradient") if self._module is not None else ())
         if "volume" not in answer:
             raise ModelError(f"{name} returned no volume")
         self.gives = sum(_ARRAYS[key][0] for key in answer)
@@ -86,17 +92,18 @@ class Model:
         with torch.set_grad_enabled(needs):
             answer = self._module(x)
             answer = dict(answer) if isinstance(answer, dict) else {"volume": answer}
-            volume = answer.get("volume")
-            if needs and "gradient" not in answer and volume is not None:
-                answer["gradient"] = self._differentiate(volume, x)
+            for value, slope in (("volume", "gradient"), ("doubt", "doubt_gradient")):
+                if slope in wants and slope not in answer and answer.get(value) is not None:
+                    answer[slope] = self._differentiate(answer[value], x)
         return answer
 
-    def _differentiate(self, volume, x):
+    def _differentiate(self, number, x):
         import torch
 
-        if not volume.requires_grad:  # it does not follow x
+        if not number.requires_grad:  # it does not follow x
             return torch.zeros_like(x)
-        return torch.autograd.grad(volume.sum(), x)[0]
+        slope = torch.autograd.grad(number.sum(), x, retain_graph=True, allow_unused=True)[0]
+        return torch.zeros_like(x) if slope is None else slope
 
     def _check(self, key, value, count):
         if key not in _ARRAYS:
@@ -245,7 +252,7 @@ def attend(channel, find_model, on_error=None):
                 if count != _VERSION:
                     raise ModelError(f"this serve.py speaks version {_VERSION} of the protocol, the program {count}")
                 model = find_model()
-                channel.reply(0, model.name, model.gives)
+                channel.reply(0, model.name if model.range is None else f"{model.name}\n{model.range}", model.gives)
             else:
                 evaluate(model, channel, count, capacity, wants)
                 channel.reply(0, "")

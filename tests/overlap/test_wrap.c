@@ -175,6 +175,67 @@ START_TEST(hybrid_is_clip_where_a_model_of_yours_doubts) {
 }
 END_TEST
 
+// By the factor `band` beyond an end of what library.c declares; V is 1e-4 Σ x².
+static bool is_beyond(const double pair[SIZE], double band) {
+  double centre[3] = {0, 0, 0}, square = 0, sum = 0;
+  for (int v = 0; v < 12; v++) centre[v % 3] += pair[v] / 4;
+  for (int v = 0; v < SIZE; v++) {
+    square += (pair[v] - centre[v % 3]) * (pair[v] - centre[v % 3]) / 8;
+    sum += pair[v] * pair[v];
+  }
+  bool is_beyond = sqrt(square) > 0.7 * band || 1e-4 * sum > 0.0008 * band;
+  for (int t = 0; t < 2; t++) {
+    const double volume = overlap_invariant_tet_volume(pair + 12 * t);
+    is_beyond |= volume < 0.005 / band || volume > 0.04 * band;
+  }
+  return is_beyond;
+}
+
+START_TEST(hybrid_is_clip_beyond_the_range_that_a_model_of_yours_declares) {
+  int left[3] = {0};
+  ask(TETLAP_MODEL_19, pairs, VOLUMES, false, &inner);
+  ask("hybrid=" TETLAP_MODEL_19, pairs, VOLUMES, false, &outer);
+  ask("clip", pairs, VOLUMES, false, &other);
+  for (int i = 0; i < PAIRS; i++) {
+    if (inner.flags[i] & OVERLAP_DISJOINT || !(other.volume[i] > 0)) continue;
+    const int place = is_beyond(pairs[i], 1) + is_beyond(pairs[i], 1.5);
+    ck_assert_int_eq((inner.flags[i] & OVERLAP_BEYOND) != 0, place > 0);
+    ck_assert_int_eq((outer.flags[i] & OVERLAP_BEYOND) != 0, place > 0);
+    if (place == 0) ck_assert(outer.volume[i] == inner.volume[i]);
+    if (place == 2) ck_assert(outer.flags[i] & OVERLAP_FALLBACK);
+    if (place == 2) ck_assert_near(outer.volume[i], other.volume[i], 1e-15);
+    if (place == 1 && inner.volume[i] != other.volume[i])
+      ck_assert((outer.volume[i] - inner.volume[i]) * (outer.volume[i] - other.volume[i]) < 0);
+    left[place]++;
+  }
+  ck_assert(left[0] > 3 && left[1] > 3 && left[2] > 3);
+}
+END_TEST
+
+// Differences of V: the share of clip follows the doubt, the range and V itself.
+START_TEST(hybrid_of_a_model_of_yours_is_differentiated_with_its_share) {
+  static const char *const words[] = {"hybrid=" TETLAP_MODEL_18, "hybrid=" TETLAP_MODEL_19,
+                                      "hybrid=both=" TETLAP_MODEL_18, "hybrid=keep=" TETLAP_MODEL_18};
+  static double moved[PAIRS][SIZE];
+  const double h = 1e-6;
+  int blended = 0;
+  ask(words[_i], pairs, GRADIENTS, false, &outer);
+  for (int v = 0; v < SIZE; v++) {
+    for (int s = 0; s < 2; s++) {
+      memcpy(moved, pairs, sizeof moved);
+      for (int i = 0; i < PAIRS; i++) moved[i][v] += s ? h : -h;
+      ask(words[_i], moved, VOLUMES, false, s ? &other : &inner);
+    }
+    for (int i = 0; i < PAIRS; i++) {
+      if (!(outer.flags[i] & OVERLAP_BLENDED) || !(inner.volume[i] > 0 && other.volume[i] > 0)) continue;
+      ck_assert_near((other.volume[i] - inner.volume[i]) / (2 * h), outer.gradient[i][v], 1e-7);
+      blended++;
+    }
+  }
+  ck_assert_int_gt(blended, 10 * SIZE);
+}
+END_TEST
+
 START_TEST(placed_and_derived_choose_the_centroid) {
   ask("tpn", pairs, VOLUMES, true, &inner);
   ask("placed=tpn", pairs, VOLUMES, true, &outer);
@@ -247,7 +308,7 @@ START_TEST(what_cannot_be_said_is_refused) {
   expect_refused("hybrid=both=fade:.05=tpn-scene=" TETLAP_SOURCE_DIR "/net/weights/tpn-scene.safetensors",
                  "write both=fade:.05=hybrid=" TETLAP_SOURCE_DIR "/net/weights/tpn-scene.safetensors");
   expect_refused("hybrid:.1=both=hybrid:.01=geo", "write both=hybrid:.01=geo");
-  expect_refused("hybrid=both=" TETLAP_MODEL_0, "tells no doubt: how far each V may be off");
+  expect_refused("hybrid=both=" TETLAP_MODEL_0, "tells no doubt: how far each V may be off, and no range");
   expect_refused("keep=geo", "'geo' gives no volume to disjoint pairs");
   expect_refused("derived=" TETLAP_MODEL_SPLIT, "gives no gradient");
   expect_refused("both=gea", "did you mean 'geo'");
@@ -263,6 +324,8 @@ int main(void) {
   tcase_add_test(cases, coplanar_turns_to_clip_where_faces_lie_in_one_plane);
   tcase_add_loop_test(cases, what_clip_finds_enclosed_stays_enclosed, 0, 2);
   tcase_add_test(cases, hybrid_is_clip_where_a_model_of_yours_doubts);
+  tcase_add_test(cases, hybrid_is_clip_beyond_the_range_that_a_model_of_yours_declares);
+  tcase_add_loop_test(cases, hybrid_of_a_model_of_yours_is_differentiated_with_its_share, 0, 4);
   tcase_add_test(cases, placed_and_derived_choose_the_centroid);
   tcase_add_loop_test(cases, derivatives_are_those_of_what_comes_out, 0, 4);
   tcase_add_loop_test(cases, a_network_is_used_as_another_is, 0, 2);

@@ -55,9 +55,10 @@ static Status ask_other(const OverlapWrapMixture *mixture, const OverlapBatch *p
 
 static unsigned flags_of(unsigned inner, unsigned other, bool has_clip, double share, double volume) {
   if (inner & OVERLAP_FLAT) return inner;
-  if (volume == 0) return (inner & OVERLAP_UNSOUND) | OVERLAP_DISJOINT;
+  const unsigned beyond = inner & OVERLAP_BEYOND;
+  if (volume == 0) return (inner & OVERLAP_UNSOUND) | beyond | OVERLAP_DISJOINT;
   inner &= ~(unsigned)OVERLAP_DISJOINT;
-  if (has_clip && share >= 1) inner = OVERLAP_FALLBACK;
+  if (has_clip && share >= 1) inner = OVERLAP_FALLBACK | beyond;
   if (has_clip && share < 1) inner |= OVERLAP_BLENDED;
   return inner | (other & OVERLAP_ENCLOSED);
 }
@@ -99,10 +100,14 @@ Status overlap_wrap_mixture_eval(OverlapWrap *wrap, const OverlapWrapMixture *mi
                                  const OverlapBatch *batch) {
   const size_t n = (size_t)batch->pair_count;
   const bool needs_gradient = batch->hessian && !batch->gradient;
-  TRY(overlap_wrap_reserve(wrap, (needs_gradient ? SIZE * n : 0) + (mixture->by_doubt ? n : 0), 0));
+  const bool needs_doubt = mixture->by_doubt && wrap->inner.ops->gives_doubt;
+  const bool needs_slope = needs_doubt && (batch->gradient || needs_gradient);
+  const size_t gradients = (needs_gradient ? SIZE * n : 0), slopes = (needs_slope ? SIZE * n : 0);
+  TRY(overlap_wrap_reserve(wrap, gradients + slopes + (needs_doubt ? n : 0), 0));
   OverlapBatch asked = *batch;
   if (needs_gradient) asked.gradient = wrap->room;
-  if (mixture->by_doubt) asked.doubt = wrap->room + (needs_gradient ? SIZE * n : 0);
+  if (needs_slope) asked.doubt_gradient = wrap->room + gradients;
+  if (needs_doubt) asked.doubt = wrap->room + gradients + slopes;
   TRY(overlap_model_eval(&wrap->inner, &asked));
   return overlap_portions_eval(&asked, PORTION, true, mix_portion, &(Mixing){wrap, mixture});
 }

@@ -17,7 +17,8 @@ typedef struct OverlapWrapShares {
 
 typedef struct OverlapWrapMixture {
   bool has_clip; // else V_other is 0
-  // `portion` has the inner model's V, and its doubt if `by_doubt`. Called from several threads at once.
+  // `portion` has the inner model's V, and if `by_doubt` the doubt that it gives. Called from several threads
+  // at once.
   Status (*share)(const OverlapWrap *wrap, const OverlapBatch *portion, int order, OverlapWrapShares *shares);
   bool by_doubt;
 } OverlapWrapMixture;

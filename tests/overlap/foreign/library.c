@@ -23,7 +23,10 @@ enum {
   PULLS_WRONG,
   KNOWS,
   DOUBTS,
-  PULLS_NAN
+  PULLS_NAN,
+  DOUBTS_SMOOTHLY,
+  RANGED,
+  RANGED_WRONG
 };
 
 enum { PULLS_BACK = WRONG == PULLS || WRONG == PULLS_WRONG || WRONG == PULLS_NAN };
@@ -79,6 +82,19 @@ static int evaluate(void *self, const TetlapModelBatch *batch, char *message, si
     batch->doubt[i] = x < 0.3 ? 0 : x > 0.6 ? INFINITY : 7e-6;
     if (x > 0.8) batch->volume[i] = 0;
   }
+  // V = 1e-4 Σ x², and a doubt of .005 (1 + x_0) V: both follow the pair, so that a hybrid of it is blended.
+  for (size_t i = 0; (WRONG == DOUBTS_SMOOTHLY || WRONG == RANGED) && i < batch->count; i++) {
+    const double *x = batch->pairs + 24 * i;
+    double sum = 0;
+    for (int v = 0; v < 24; v++) sum += x[v] * x[v];
+    batch->volume[i] = 1e-4 * sum;
+    if (batch->doubt) batch->doubt[i] = 5e-7 * sum * (1 + x[0]);
+    for (int v = 0; v < 24; v++) {
+      if (batch->gradient) batch->gradient[24 * i + v] = 2e-4 * x[v];
+      if (batch->doubt_gradient)
+        batch->doubt_gradient[24 * i + v] = 5e-7 * (2 * x[v] * (1 + x[0]) + (v == 0) * sum);
+    }
+  }
   if (WRONG == SPOILS) memset((double *)batch->pairs, 0xFF, 24 * batch->count * sizeof(double));
   if (WRONG != EVALUATE_FAILS) return 0;
   snprintf(message, size, "the card fell out");
@@ -103,19 +119,27 @@ const TetlapModel *another_name(void) {
 #else
 const TetlapModel *tetlap_model(void) {
 #endif
-  static const TetlapModel model = {.size = WRONG == NO_SIZE ? 0
-                                            : WRONG == NOTHING
-                                                ? offsetof(TetlapModel, pull_back) // an older header's
-                                                : sizeof model,
-                                    .abi = WRONG == OTHER_ABI ? 99 : TETLAP_MODEL_ABI,
-                                    .name = "wrong",
-                                    .gives = PULLS_BACK ? TETLAP_MODEL_CENTROID | TETLAP_MODEL_CURVATURE
-                                             : WRONG == DOUBTS ? TETLAP_MODEL_DOUBT
-                                             : WRONG == KNOWS  ? TETLAP_MODEL_CENTROID | TETLAP_MODEL_ORIGINS
-                                                               : TETLAP_MODEL_GRADIENT,
-                                    .open = open_it,
-                                    .close = close_it,
-                                    .evaluate = WRONG == NO_EVALUATE ? NULL : evaluate,
-                                    .pull_back = PULLS_BACK ? pull_back : NULL};
+  static const TetlapModel model = {
+      .size = WRONG == NO_SIZE   ? 0
+              : WRONG == NOTHING ? offsetof(TetlapModel, pull_back) // an older header's
+              : WRONG == PULLS   ? offsetof(TetlapModel, range)     // likewise
+                                 : sizeof model,
+      .abi = WRONG == OTHER_ABI ? 99 : TETLAP_MODEL_ABI,
+      .name = "wrong",
+      .gives = PULLS_BACK        ? TETLAP_MODEL_CENTROID | TETLAP_MODEL_CURVATURE
+               : WRONG == DOUBTS ? TETLAP_MODEL_DOUBT
+               : WRONG == DOUBTS_SMOOTHLY
+                   ? TETLAP_MODEL_GRADIENT | TETLAP_MODEL_DOUBT | TETLAP_MODEL_DOUBT_GRADIENT
+               : WRONG == KNOWS ? TETLAP_MODEL_CENTROID | TETLAP_MODEL_ORIGINS
+                                : TETLAP_MODEL_GRADIENT,
+      .open = open_it,
+      .close = close_it,
+      .evaluate = WRONG == NO_EVALUATE ? NULL : evaluate,
+      .pull_back = PULLS_BACK ? pull_back : NULL,
+      .range = WRONG == RANGED || WRONG == DOUBTS_SMOOTHLY
+                   ? "radius 0.1 to 0.7, first volume 0.005 to 0.04, second "
+                     "volume 0.005 to 0.04, overlap to 0.0008"
+               : WRONG == RANGED_WRONG || WRONG == PULLS ? "radius 2 to 1"
+                                                         : NULL};
   return &model;
 }

@@ -24,6 +24,25 @@ def with_all(pairs):
             "logit": np.arange(n) - 1.5, "doubt": np.full(n, 0.25)}
 
 
+def ranged(pairs):
+    """The doubt is a third of the first coordinate."""
+    n = len(pairs)
+    slope = np.zeros((n, 24))
+    slope[:, 0] = 1 / 3
+    return {"volume": np.full(n, 1e-4), "gradient": np.zeros((n, 2, 4, 3)), "doubt": pairs[:, 0, 0, 0] / 3,
+            "doubt_gradient": slope.reshape(n, 2, 4, 3)}
+
+
+ranged.range = "radius 0.1 to 0.7, first volume 0 to 0.04, second volume 0 to 0.04, overlap to 0.3"
+
+
+def ranged_wrong(pairs):
+    return box(pairs)
+
+
+ranged_wrong.range = (0.1, 0.7)
+
+
 class Made:
     def __call__(self, pairs):
         return box(pairs)

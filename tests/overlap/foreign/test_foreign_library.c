@@ -44,6 +44,7 @@ START_TEST(libraries_that_are_wrong) {
                {TETLAP_MODEL_2, "version 99", false},
                {TETLAP_MODEL_3, "no `size", false},
                {TETLAP_MODEL_4, "no `evaluate`", false},
+               {TETLAP_MODEL_20, "its range is 'radius 2 to 1', expected 'radius A to B, first", false},
                {TETLAP_MODEL_5, "(3): weights of 1 GB are not there", false},
                {TETLAP_MODEL_6, "failed with 4: the card fell out", true},
                {TETLAP_MODEL_7, "its volume is not a finite number", true}};
@@ -233,6 +234,21 @@ START_TEST(a_library_is_told_where_a_scenes_pairs_are_from) {
 }
 END_TEST
 
+// Elements of this scene are far smaller than those that the model is for, so clip has them all.
+START_TEST(pairs_beyond_a_declared_range_are_counted_in_a_run) {
+  char text[20000], folder[] = "/tmp/tetlap-foreign-XXXXXX", words[1000];
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  snprintf(words, sizeof words,
+           "run %s/examples/02_two_blocks.yaml --set time.end=0.1 --set output.vtu=false --overlap "
+           "hybrid=%s -q -o %s; cat %s/summary.json; rm -r %s",
+           TETLAP_SOURCE_DIR, TETLAP_MODEL_19, folder, folder, folder);
+  ck_assert_int_eq(run_program(words, text), 0);
+  const char *name = strstr(text, "\"beyond_range_pairs\":");
+  ck_assert_msg(name && strstr(text, "\"outcome\": \"finished\""), "%s", text);
+  ck_assert_int_gt(atoi(strchr(name, ':') + 1), 10);
+}
+END_TEST
+
 // Below 0 is no volume: nothing pushes. Above the smaller tetrahedron is no volume either, but a push.
 START_TEST(volumes_that_none_can_have_are_flagged) {
   OverlapModel model;
@@ -382,6 +398,7 @@ int main(void) {
   tcase_add_test(cases, a_pull_back_that_is_no_number_is_told_with_its_pair);
   tcase_add_test(cases, stress_holds_the_pull_back_of_centroids_to_differences);
   tcase_add_test(cases, a_library_is_told_where_a_scenes_pairs_are_from);
+  tcase_add_test(cases, pairs_beyond_a_declared_range_are_counted_in_a_run);
   tcase_add_test(cases, volumes_that_none_can_have_are_flagged);
   tcase_add_loop_test(cases, a_coordinate_that_is_not_finite_is_named, 0, 15);
   tcase_add_loop_test(cases, such_volumes_end_a_run_or_are_counted_as_asked, 0, 3);

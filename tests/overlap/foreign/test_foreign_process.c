@@ -11,6 +11,7 @@
 
 #include "base/machine/interrupt.h"
 #include "model.h"
+#include "overlap/tpn/range.h"
 
 #define PYTHON(name) TETLAP_SOURCE_DIR "/tests/overlap/foreign/models.py:" name
 
@@ -60,6 +61,27 @@ START_TEST(a_python_function_answers_with_all_that_it_has) {
   ck_assert(logits[0] == -1.5 && logits[PAIRS - 1] == PAIRS - 2.5 && bounds[7] == 0.25);
   overlap_model_destroy(&model);
   open_model(&model, PYTHON("Made")); // a class is called first
+  overlap_model_destroy(&model);
+}
+END_TEST
+
+START_TEST(a_python_function_declares_its_range_and_differentiates_its_doubt) {
+  static double doubts[PAIRS], slopes[PAIRS][24];
+  OverlapModel model;
+  int beyond = 0, asked = 0;
+  if (!has_numpy()) return;
+  open_model(&model, PYTHON("ranged"));
+  ck_assert(model.ops->gives_doubt_gradient && model.ops->range);
+  ck_assert(model.ops->range->radius[0] == 0.1 && model.ops->range->overlap == 0.3);
+  OverlapBatch batch = batch_of(PAIRS, true, false);
+  batch.doubt = doubts, batch.doubt_gradient = slopes[0];
+  ck_assert_ok(overlap_model_eval(&model, &batch));
+  for (int i = 0; i < PAIRS; i++) {
+    if (flags[i] & OVERLAP_DISJOINT) continue;
+    ck_assert(doubts[i] == pairs[i][0] / 3 && slopes[i][0] == 1.0 / 3 && slopes[i][23] == 0);
+    beyond += (flags[i] & OVERLAP_BEYOND) != 0, asked++;
+  }
+  ck_assert(beyond > 5 && beyond < asked - 5);
   overlap_model_destroy(&model);
 }
 END_TEST
@@ -125,6 +147,7 @@ START_TEST(python_that_is_wrong) {
   expect_refused(PYTHON("nothing"), STATUS_INPUT, "has no 'nothing'; it has box");
   expect_refused(PYTHON("NUMBER"), STATUS_INPUT, "NUMBER is int, expected a callable");
   expect_refused(PYTHON("wrong_shape"), STATUS_INPUT, "volume of shape (1, 1), expected (1,)");
+  expect_refused(PYTHON("ranged_wrong"), STATUS_INPUT, "the range of ranged_wrong is tuple, expected a text");
   expect_refused(PYTHON("wrong_key"), STATUS_INPUT, "'volumes', which is none of volume");
   expect_refused(PYTHON("no_numbers"), STATUS_INPUT, "no array of numbers");
   expect_refused(PYTHON("complex_numbers"), STATUS_INPUT, "its type is complex128, expected float64");
@@ -356,6 +379,7 @@ int main(void) {
   draw();
   setenv("TETLAP_PYTHON", TETLAP_PYTHON, 1);
   tcase_add_test(cases, a_python_function_answers_with_all_that_it_has);
+  tcase_add_test(cases, a_python_function_declares_its_range_and_differentiates_its_doubt);
   tcase_add_test(cases, a_model_of_v_alone_runs_where_its_volumes_are_placed);
   tcase_add_test(cases, a_command_answers_as_a_function_does);
   tcase_add_test(cases, the_shared_memory_grows);
