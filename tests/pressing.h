@@ -111,6 +111,21 @@ static inline void press_on(Scene *scene, int kind) {
   }
 }
 
+// Vertices of the upper block are pushed through what lies above them, so that elements are
+// inverted there; returns how many pairs have a side that is.
+static inline int fold(Scene *scene) {
+  const ContactLayout *layout = contact_system_layout(scene->system);
+  const ContactBody *upper = &scene->blocks.bodies[scene->blocks.body_count - 1];
+  int folded = 0;
+  for (int v = upper->vertex_begin; v < upper->vertex_end; v++)
+    if (layout->mesh.depths[v] > 0) scene->blocks.x[3 * v + 2] -= 1.1, scene->blocks.x[3 * v] += 0.2;
+  move(scene);
+  const ContactEvaluation *evaluation = evaluated_at(scene->system, 0, scene->blocks.x);
+  for (int k = 0; k < evaluation->pair_count; k++)
+    folded += evaluation->fields[k].depths[0] < 0 || evaluation->fields[k].depths[1] < 0;
+  return folded;
+}
+
 static inline double *random_motion(const Scene *scene, uint64_t stream, bool obstacles_move) {
   Random random = random_seeded(21, stream);
   double *d = calloc(3 * (size_t)scene->blocks.vertex_count, sizeof(double));

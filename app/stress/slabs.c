@@ -150,10 +150,8 @@ Status app_stress_slabs_run(AppStressRun *run) {
   run->began_s = clock_cpu_s();
   run->extra[LEAST_PAIRS] = INFINITY;
   run->status = fem_system_create(&system, &run->model);
-  if (!run->status) {
-    run->status = press(&slabs, &system);
-    fem_system_destroy(&system);
-  }
+  if (!run->status) run->status = press(&slabs, &system);
+  fem_system_destroy(&system);
   run->cpu_s = clock_cpu_s() - run->began_s;
   if (run->status) snprintf(run->message, sizeof run->message, "%s", status_message());
   return run->status == STATUS_MEMORY || run->status == STATUS_INTERRUPTED ? run->status : STATUS_OK;

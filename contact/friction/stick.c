@@ -222,7 +222,7 @@ static double limit_at_onset(double k, Vec3 carried, Vec3 way, double before, do
 static double work_of_cut(const ContactStickNode *node, const ContactStickEntry *entry, double least,
                           double onset, double cut) {
   double weak = entry ? entry->weak : 0, held = least + node->excess * (1 - weak);
-  double press = 0.5 * (1 + onset / held);
+  double press = held > 0 ? 0.5 * (1 + onset / held) : 0;
   double over = fmin(cut, (1 - weak) * node->over);
   return press * (0.5 * (held + node->limit) * over + least * (cut - over));
 }

@@ -15,8 +15,8 @@
 //   n_a = f_a / N_a,      k_a = c_t Σ λ_a A_ij,      P = 1 − n nᵀ
 //   carried   S_a' = F_a S_a √(E_a / (½ k_a |F_a S_a|²)),  E_a what it stored at the last accepted state
 //   trial     s = P (S_a' + Δ_a),   T_a = −k_a s;   where k_a |s| > μ N_a by radial return
-//             s ← s μN_a/(k_a |s|)     (Simo and Hughes, Computational Inelasticity, 1.4: a slider and a
-//             spring)
+//             s ← s μN_a/(k_a |s|)     (Simo and Hughes, Computational Inelasticity, 1.4:
+//             a slider and a spring)
 //   force     Σ_a (w/W) T_a on the pair, at x̄: by λ on A's vertices, its opposite on B's
 //   matrix    D_a ⊗ ω ωᵀ,  ω = Σ (w/W)(λ_A, −λ_B);   D = k P in stick, μN/|s_trial| (P − ŝŝᵀ) in slip
 //   weakens   where μ_s > μ, the limit is L = (μ + (μ_s − μ)(1 − w)) N, and w grows by 1/D for each length

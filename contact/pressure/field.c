@@ -302,7 +302,8 @@ void contact_field_turn_law(const ContactLayout *layout, const ContactPair *pair
                             const double coordinates[24], const ContactFieldPair *field, double *matrix) {
   bool is_shape = pair->cells[1] < 0;
   int width = is_shape ? 12 : 24;
-  double step = contact_field_law_step() * (field->depths[0] + field->depths[1]), x[24], force[24];
+  double step = contact_field_law_step() * (fabs(field->depths[0]) + fabs(field->depths[1])), x[24],
+         force[24];
   memset(matrix, 0, (size_t)(width * width) * sizeof *matrix);
   for (int k = 0; k < width && step > 0; k++) {
     double ahead = coordinates[k] + step, behind = coordinates[k] - step, way = ahead - behind; // rounded

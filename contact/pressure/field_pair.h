@@ -29,15 +29,21 @@ static inline double contact_field_secant(const ContactFieldPair *field) {
   return length > 0 ? vec3_length(vec3_at(field->force)) / length : 0;
 }
 
+// −1: the cell of that side is turned inside out, and σ of contact/pressure/field.h is; else 1.
+static inline double contact_field_sign(const ContactFieldPair *field, int side) {
+  return field->depths[side] < 0 ? -1 : 1;
+}
+
 // The area that a pair covers [m²], V F / (2 U): of a slab of thickness D over an area V = ∫ D dA,
 // F = 2 c ∫ D dA, U = c ∫ D² dA (against a shape F = c ∫ D dA, U = ½ c ∫ D² dA), so that it is
 // (∫ D dA)² / ∫ D² dA. Exact where D is even, also in squeezed cells; ¾ of the area where D falls to 0
-// linearly. With a law F and U are those of the linear one.
+// linearly. F and U are those of the linear law and of σ = 1, so that it is an area in folded bodies, too.
 static inline double contact_field_area(const ContactFieldPair *field) {
-  if (field->law) {
-    Vec3 push = vec3_sub(vec3_scale(field->weighed[0], vec3_at(field->slopes[1])),
-                         vec3_scale(field->weighed[1], vec3_at(field->slopes[0])));
-    double moment = field->weighed[0] * field->depths[1] + field->weighed[1] * field->depths[0];
+  double a = contact_field_sign(field, 0), b = contact_field_sign(field, 1);
+  if (field->law || a < 0 || b < 0) {
+    Vec3 push = vec3_sub(vec3_scale(b * field->weighed[0], vec3_at(field->slopes[1])),
+                         vec3_scale(a * field->weighed[1], vec3_at(field->slopes[0])));
+    double moment = b * field->weighed[0] * field->depths[1] + a * field->weighed[1] * field->depths[0];
     return moment > 0 ? 0.5 * field->volume * vec3_length(push) / moment : 0;
   }
   double force = vec3_length(vec3_at(field->force));

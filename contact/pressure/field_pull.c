@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "contact/pressure/field_pull.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "contact/pressure/clipped.h"
@@ -15,16 +16,17 @@ typedef struct Means {
   Vec3 g[2];
 } Means;
 
-// Of the area ½ V |F|/U; those of V and U are returned, that of F is added.
-static void pull_area(const ContactFieldPair *field, double area_slope, Vec3 *force_slope, double *of_volume,
-                      double *of_energy) {
-  Vec3 force = vec3_at(field->force);
-  double area = contact_field_area(field), square = vec3_dot(force, force);
-  *of_volume = *of_energy = 0;
-  if (!(square > 0 && field->energy > 0)) return;
-  *of_volume = area_slope * area / field->volume;
-  *of_energy = -area_slope * area / field->energy;
-  *force_slope = vec3_add(*force_slope, vec3_scale(area_slope * area / square, force));
+// ∂g/∂V, ∂g/∂U and ∂g/∂F of a g of the area ½ V |F|/U.
+typedef struct AreaSlopes {
+  double volume, energy;
+  Vec3 force;
+} AreaSlopes;
+
+static AreaSlopes pull_area(double volume, double energy, Vec3 force, double by_area) {
+  double square = vec3_dot(force, force);
+  if (!(square > 0 && energy > 0)) return (AreaSlopes){0};
+  double g = by_area * 0.5 * volume * sqrt(square) / energy;
+  return (AreaSlopes){g / volume, -g / energy, vec3_scale(g / square, force)};
 }
 
 // The transpose of contact_mesh_fold.
@@ -56,19 +58,28 @@ static double pull_weights(const ContactLayout *layout, const ContactPair *pair,
 
 static void find_means(const ContactLayout *layout, const ContactPair *pair, const ContactSide sides[2],
                        const ContactFieldPair *field, const ContactFieldSlopes *by, Means *means) {
-  double c = layout->interfaces[pair->interface].stiffness, lambda[2][4], of_volume, of_energy;
-  Vec3 force_slope = vec3_at(by->force);
+  double c = layout->interfaces[pair->interface].stiffness, lambda[2][4], energy = 0;
+  Vec3 of_force = vec3_at(by->force), force = {0, 0, 0};
   memset(means, 0, sizeof *means);
-  for (int t = 0; t < 2; t++) contact_side_locate(&sides[t], vec3_at(field->centroid), lambda[t]);
-  pull_area(field, by->area, &force_slope, &of_volume, &of_energy);
-  of_volume += vec3_dot(force_slope, vec3_at(field->force)) / field->volume;
+  for (int t = 0; t < 2; t++) { // F and U of the area, where σ = 1
+    double share = c * field->volume * sides[t].s * sides[1 - t].sign;
+    force = vec3_add(force, vec3_scale(t == 0 ? -share : share, sides[1 - t].g));
+    energy += share * field->depths[1 - t];
+    contact_side_locate(&sides[t], vec3_at(field->centroid), lambda[t]);
+  }
+  AreaSlopes area = pull_area(field->volume, energy, force, by->area);
+  double of_volume =
+      area.volume + (vec3_dot(of_force, vec3_at(field->force)) + vec3_dot(area.force, force)) / field->volume;
   of_volume += pull_weights(layout, pair, lambda, field, by, means);
   for (int t = 0; t < 2; t++) { // F = −c V (s₀ g₁ − s₁ g₀), U = c V (s₀ φ₁ + s₁ φ₀)
-    double sign = t == 0 ? -c : c, whole = of_energy * c * sides[1 - t].s;
-    means->s[t] = sign * field->volume * vec3_dot(force_slope, sides[1 - t].g) +
-                  of_energy * c * field->volume * field->depths[1 - t];
-    means->g[1 - t] = vec3_scale(sign * sides[t].s * field->volume, force_slope);
-    for (int v = 0; v < 4; v++) means->moments[4 * t + v] += whole * sides[t].depths[v];
+    const ContactSide *own = &sides[t], *other = &sides[1 - t];
+    double sign = t == 0 ? -c : c;
+    Vec3 slope = vec3_add(of_force, vec3_scale(other->sign, area.force));
+    means->s[t] = field->volume *
+                  (sign * vec3_dot(slope, other->g) + area.energy * c * other->sign * field->depths[1 - t]);
+    means->g[1 - t] = vec3_scale(sign * own->s * field->volume, slope);
+    for (int v = 0; v < 4; v++)
+      means->moments[4 * t + v] += area.energy * c * other->s * own->sign * own->depths[v];
   }
   for (int v = 0; v < 4; v++) means->moments[v] += of_volume;
 }
@@ -186,11 +197,12 @@ void contact_field_pull_shape(const ContactLayout *layout, const ContactPair *pa
                               const double tet[12], const ContactFieldPair *field, const double forces[12],
                               const ContactFieldSlopes *by, double slope[12]) {
   const ContactShape *shape = &layout->def.shapes[layout->interfaces[pair->interface].shape];
-  double matrix[144], gradient[12], by_force[12], volume, of_volume, of_energy;
-  Vec3 force = vec3_at(field->force), force_slope = vec3_at(by->force);
+  double matrix[144], gradient[12], by_force[12], volume;
+  Vec3 force = vec3_at(field->force);
   double square = vec3_dot(force, force);
   if (!(square > 0)) return;
-  pull_area(field, by->area, &force_slope, &of_volume, &of_energy);
+  AreaSlopes area = pull_area(field->volume, field->energy, force, by->area);
+  Vec3 force_slope = vec3_add(vec3_at(by->force), area.force);
   for (int v = 0; v < 4; v++) {
     Vec3 across = vec3_sub(vec3_at(forces + 3 * v), vec3_scale(2 * field->weights[0][v], force));
     force_slope = vec3_add(force_slope, vec3_scale(by->weights[0][v] / square, across));
@@ -202,6 +214,6 @@ void contact_field_pull_shape(const ContactLayout *layout, const ContactPair *pa
   for (int i = 0; i < 12; i++) {
     double sum = 0;
     for (int k = 0; k < 12; k++) sum += matrix[12 * i + k] * by_force[k];
-    slope[i] += of_volume * gradient[i] - of_energy * forces[i] - sum;
+    slope[i] += area.volume * gradient[i] - area.energy * forces[i] - sum;
   }
 }

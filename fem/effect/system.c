@@ -176,9 +176,9 @@ static Status create(FemSystem *system) {
 
 Status fem_system_create(FemSystem *system, const FemModel *model) {
   *system = (FemSystem){.model = model};
-  Status status = create(system);
-  if (status) fem_system_destroy(system);
-  return status;
+  TRY(create(system));
+  system->is_whole = true;
+  return STATUS_OK;
 }
 
 static Status create_again(FemSystem *system) {
@@ -198,9 +198,10 @@ static Status create_again(FemSystem *system) {
 }
 
 Status fem_system_create_again(FemSystem *system) {
-  Status status = create_again(system);
-  if (status) fem_system_destroy(system);
-  return status;
+  system->is_whole = false;
+  TRY(create_again(system));
+  system->is_whole = true;
+  return STATUS_OK;
 }
 
 void fem_system_destroy(FemSystem *system) {

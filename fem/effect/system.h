@@ -18,6 +18,7 @@ typedef struct FemEffectCost {
 
 typedef struct FemSystem {
   const FemModel *model; // borrowed
+  bool is_whole;         // the last creation did not fail
   FemNumbering numbering;
   FemEffect effects[FEM_MAX_EFFECTS];
   FemEffectCost costs[FEM_MAX_EFFECTS];
@@ -33,9 +34,9 @@ typedef struct FemSystem {
                                           // STATUS_INTERRUPTED; borrowed, NULL: never
 } FemSystem;
 
+// After a failure its effects can be asked for the reason; fem_system_destroy must follow.
 Status fem_system_create(FemSystem *system, const FemModel *model);
-// Takes it back in place to what depends on no state; fem_system_begin must follow. After a failure there is
-// nothing to destroy.
+// Takes it back in place to what depends on no state; fem_system_begin must follow. Failures as above.
 Status fem_system_create_again(FemSystem *system);
 void fem_system_destroy(FemSystem *system);
 

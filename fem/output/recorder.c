@@ -157,7 +157,7 @@ void fem_recorder_destroy(FemRecorder *recorder) {
 }
 
 Status fem_recorder_clear(const FemRecorder *recorder) {
-  static const char *const names[] = {"frames.pvd", "history.csv", "summary.json", "unsound_pair.csv"};
+  static const char *const names[] = {"frames.pvd", "history.csv", "summary.json"};
   if (!recorder->directory) return STATUS_OK;
   int frames = file_remove_numbered(recorder->directory, "frame_", ".vtu") +
                file_remove_numbered(recorder->directory, "frame_", ".pvtu");

@@ -111,6 +111,7 @@ static Status begin_record(FemRunState *run) {
   fem_run_frames_keep_extremes(run->result, &measures);
   fem_trouble_add(&run->result->trouble, run->time, &measures.trouble);
   if (!run->options->from && !run->model->start) TRY(warn_of_overlaps(&run->system, &run->trial));
+  TRY(fem_run_blame_clear(run));
   // Files of an earlier run in this folder are about to be replaced: all of them go, the checkpoint too.
   if (!run->options->from) {
     TRY(fem_recorder_clear(&run->recorder));
@@ -173,7 +174,7 @@ static Status begin_rest(FemRunState *run) {
 // Everything anew from the checkpoint: the same whether the run goes on, is resumed, or begins.
 static Status begin_part(FemRunState *run) {
   const FemCheckpoint *from = &run->checkpoint;
-  bool is_first = !run->system.model;
+  bool is_first = !run->system.is_whole;
   run->time = from->time;
   run->audit = from->audit;
   run->next_frame = from->next_frame;
@@ -195,7 +196,7 @@ static Status begin_part(FemRunState *run) {
 static void end_part(FemRunState *run) {
   FemRunResult *result = run->result;
   fem_run_stage_end(run);
-  if (run->system.model) fem_run_result_add_system(result, &run->system);
+  if (run->system.is_whole) fem_run_result_add_system(result, &run->system);
   fem_rest_report(run->rest, result->counters);
   result->cost.phases.output += run->recorder.seconds;
   run->recorder.seconds = 0;
@@ -266,7 +267,7 @@ static Status collect(FemRunState *run, Status status) {
   result->cost.phases.total = result->cost.wall_s;
   if (!status) fem_run_spread_collect(run, result); // after a failure other ranks may not come here
   // Without a system, a new part could not be begun.
-  if (run->recorder.system && run->system.model) TRY(keep_account(run));
+  if (run->recorder.system && run->system.is_whole) TRY(keep_account(run));
   return written;
 }
 

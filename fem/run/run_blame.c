@@ -7,6 +7,16 @@
 #include "base/memory.h"
 #include "fem/effect/contact/contact.h"
 
+static const char PAIR_FILE[] = "unsound_pair.csv";
+
+Status fem_run_blame_clear(const FemRunState *run) {
+  char *path = run->options->directory ? file_join(run->options->directory, PAIR_FILE) : NULL;
+  if (run->options->directory && !path) return status_no_memory("a file name");
+  if (path) file_remove(path);
+  memory_free(path);
+  return STATUS_OK;
+}
+
 static Status write(const double pair[24], const char *path) {
   FileWriter writer;
   TRY(file_begin(&writer, path));
@@ -24,7 +34,7 @@ Status fem_run_blame_pair(const FemRunState *run, Status status) {
   const double *pair = run->options->directory ? find_pair(run) : NULL;
   if (!pair) return status;
   snprintf(message, sizeof message, "%s", status_message());
-  char *path = file_join(run->options->directory, "unsound_pair.csv");
+  char *path = file_join(run->options->directory, PAIR_FILE);
   const Status written = path ? write(pair, path) : status_no_memory("a file name");
   if (written)
     status_fail(status, "%s; its coordinates could not be written: %s", message, status_message());

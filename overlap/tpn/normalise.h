@@ -8,8 +8,7 @@
 //   unit  affine: the first tetrahedron becomes the unit simplex (its vertices in their order the origin and
 //         the unit vectors). V' = V / |det E|, E the matrix of its edges from the first vertex.
 //   unscaled  unit, but V' = V: the network is left to tell the volume of the pair as it was, of which only
-//   the
-//         image is shown. No function of its input: pairs with the same image have other volumes.
+//         the image is shown. No function of its input: pairs with the same image have other volumes.
 //   sorted  unit, with the vertices of both in an order that does not depend on how they came: the first's
 //         by its barycentric coordinates of the other's centroid, the largest first; then the other's by
 //         their barycentric coordinate of the first's first vertex. Coordinates beyond 3 are compressed: ±3

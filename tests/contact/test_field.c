@@ -23,20 +23,6 @@ START_TEST(forces_are_minus_the_gradient_of_the_energy) {
 }
 END_TEST
 
-// Vertices of the upper block are pushed through what lies above them, so that elements are inverted there.
-static int fold(Scene *scene) {
-  const ContactLayout *layout = contact_system_layout(scene->system);
-  const ContactBody *upper = &scene->blocks.bodies[scene->blocks.body_count - 1];
-  int folded = 0;
-  for (int v = upper->vertex_begin; v < upper->vertex_end; v++)
-    if (layout->mesh.depths[v] > 0) scene->blocks.x[3 * v + 2] -= 1.1, scene->blocks.x[3 * v] += 0.2;
-  move(scene);
-  const ContactEvaluation *evaluation = evaluated_at(scene->system, 0, scene->blocks.x);
-  for (int k = 0; k < evaluation->pair_count; k++)
-    folded += evaluation->fields[k].depths[0] < 0 || evaluation->fields[k].depths[1] < 0;
-  return folded;
-}
-
 START_TEST(forces_are_minus_the_gradient_where_a_body_is_folded) {
   Scene scene;
   press_on(&scene, ON_BODY);
@@ -52,6 +38,35 @@ START_TEST(forces_are_minus_the_gradient_where_a_body_is_folded) {
     free(d);
   }
   free(x), free(force), destroy(&scene);
+}
+END_TEST
+
+// No more than half of a cell's surface: what a polyhedron shows to any side.
+static double half_surface(const double x[12]) {
+  static const int faces[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
+  double sum = 0;
+  for (int f = 0; f < 4; f++) {
+    Vec3 a = vec3_at(x + 3 * faces[f][0]), b = vec3_sub(vec3_at(x + 3 * faces[f][1]), a),
+         c = vec3_sub(vec3_at(x + 3 * faces[f][2]), a);
+    sum += vec3_length(vec3_cross(b, c)) / 4;
+  }
+  return sum;
+}
+
+START_TEST(a_pair_of_a_folded_body_covers_an_area_that_cells_have) {
+  Scene scene;
+  press_on(&scene, ON_BODY);
+  start(&scene, "clip");
+  ck_assert_int_gt(fold(&scene), 10);
+  const ContactEvaluation *evaluation = evaluated_at(scene.system, 0, scene.blocks.x);
+  for (int k = 0; k < evaluation->pair_count; k++) {
+    const double *x = evaluation->coordinates + 24 * (size_t)k;
+    double area = contact_field_area(&evaluation->fields[k]),
+           most = fmin(half_surface(x), half_surface(x + 12));
+    ck_assert_double_le(area, most);
+    if (vec3_length(vec3_at(evaluation->fields[k].force)) > 0) ck_assert_double_gt(area, 0);
+  }
+  destroy(&scene);
 }
 END_TEST
 
@@ -530,6 +545,7 @@ int main(void) {
   TCase *tests = tcase_create("field");
   tcase_add_loop_test(tests, forces_are_minus_the_gradient_of_the_energy, 0, KINDS);
   tcase_add_test(tests, forces_are_minus_the_gradient_where_a_body_is_folded);
+  tcase_add_test(tests, a_pair_of_a_folded_body_covers_an_area_that_cells_have);
   tcase_add_loop_test(tests, stiffness_is_minus_the_derivative_of_the_forces, 0, KINDS + 1);
   tcase_add_loop_test(tests, every_pair_balances_with_every_model, 0, MODEL_COUNT);
   tcase_add_test(tests, a_model_without_its_own_centroid_presses_and_balances);

@@ -255,6 +255,34 @@ START_TEST(the_matrix_of_a_law_is_the_same_far_from_the_origin) {
 }
 END_TEST
 
+START_TEST(the_matrix_of_a_law_is_what_differences_say_where_a_body_is_folded) {
+  Expression formula;
+  ContactLaw law = law_of(SQUARE, &formula);
+  Scene scene;
+  press_on(&scene, ON_BODY);
+  scene.law = &law;
+  start(&scene, "clip");
+  ck_assert_int_gt(fold(&scene), 10);
+  int n = 3 * scene.blocks.vertex_count;
+  double *x = blocks_copy(&scene.blocks), *d = random_motion(&scene, 1, false), h = 1e-6, square = 0;
+  Product product = product_of(d, scene.blocks.vertex_count);
+  ContactStiffnessSink sink = product_sink(&product);
+  ck_assert_ok(contact_system_turn(scene.system, evaluated_at(scene.system, 0, scene.blocks.x),
+                                   CONTACT_ALL_INTERFACES, &sink));
+  step_to(&scene, h, d, x);
+  double *above = forces_at(&scene, x);
+  step_to(&scene, -h, d, x);
+  double *below = forces_at(&scene, x);
+  for (int i = 0; i < n; i++) {
+    double difference = (above[i] - below[i]) / (2 * h) + product.y[i];
+    square += difference * difference;
+  }
+  // Differences by steps of a pair's depth, which is small in some.
+  ck_assert_double_le(sqrt(square / product_dot(product.y, product.y, n)), 1e-5);
+  free(x), free(d), free(above), free(below), free(product.y), destroy(&scene);
+}
+END_TEST
+
 START_TEST(energy_force_and_stiffness_are_a_taylor_series) {
   int kind = _i ? ON_PLANE : ON_BODY;
   Expression formula;
@@ -384,6 +412,7 @@ int main(void) {
   tcase_add_loop_test(tests, forces_are_minus_the_gradient_of_the_energy, 0, LAWS);
   tcase_add_loop_test(tests, stiffness_is_minus_the_derivative_of_the_forces, 0, LAWS);
   tcase_add_loop_test(tests, the_matrix_of_a_law_is_the_same_far_from_the_origin, 0, 2);
+  tcase_add_test(tests, the_matrix_of_a_law_is_what_differences_say_where_a_body_is_folded);
   tcase_add_loop_test(tests, energy_force_and_stiffness_are_a_taylor_series, 0, 2);
   tcase_add_loop_test(tests, every_pair_balances, 0, LAWS);
   tcase_add_loop_test(tests, flat_surfaces_press_with_the_law_s_pressure, 0, LAWS);

@@ -267,6 +267,23 @@ START_TEST(what_breaks_away_slides_at_less) {
 }
 END_TEST
 
+// What it held by μ_s N is dissipated, and then nothing.
+START_TEST(what_breaks_away_slides_freely_without_friction) {
+  Fixture *f = start_at_rest(0.8, 0);
+  f->stick.laws[0].friction = 0;
+  eval(f);
+  accept(f);
+  double k = STIFFNESS * AREA, step = 0.1 * PRESS / k, work = 0;
+  drag(f, step, 40, &work);
+  ck_assert_near(pull_of(f).x, 0, 1e-12 * PRESS);
+  double spent = *history_of(f).dissipated;
+  ck_assert_double_gt(spent, 0);
+  drag(f, step, 10, &work);
+  ck_assert_near(*history_of(f).dissipated, spent, 1e-12 * spent);
+  finish(f);
+}
+END_TEST
+
 // One step across it all: no more is dissipated than by small ones, so that nothing seems to be gained.
 START_TEST(a_long_step_dissipates_as_many_short_ones) {
   double spent[2];
@@ -678,6 +695,7 @@ int main(void) {
   tcase_add_test(test_case, what_breaks_away_slides_at_less);
   tcase_add_test(test_case, a_long_step_dissipates_as_many_short_ones);
   tcase_add_test(test_case, a_long_step_dissipates_as_many_short_ones_at_a_press_that_changes);
+  tcase_add_test(test_case, what_breaks_away_slides_freely_without_friction);
   tcase_add_test(test_case, what_sticks_again_holds_as_before);
   tcase_add_test(test_case, friction_at_rest_that_is_no_more_changes_nothing);
   tcase_add_test(test_case, forces_and_torques_of_a_pair_balance);

@@ -262,10 +262,8 @@ static Status make_system(const char *unused) {
   (void)unused;
   FemSystem system = {0};
   Status status = fem_system_create(&system, &job.model);
-  if (!status) {
-    status = fem_system_create_again(&system);
-    if (!status) fem_system_destroy(&system);
-  }
+  if (!status) status = fem_system_create_again(&system);
+  fem_system_destroy(&system);
   return status;
 }
 

@@ -60,10 +60,10 @@ static double machine_memory(void) {
 // Who overlaps before anything has moved.
 static Status note_overlaps(const AppJob *job, AppCheckNotes *notes) {
   FemSystem system = {0};
-  TRY(fem_system_create(&system, &job->model));
+  Status status = fem_system_create(&system, &job->model);
   const ContactEvaluation *contact;
   FemEnergy energy;
-  Status status = fem_system_energy(&system, &system.accepted, &energy);
+  if (!status) status = fem_system_energy(&system, &system.accepted, &energy);
   if (!status) status = fem_effect_contact_evaluate(&system, &system.accepted, &contact);
   int count = status ? 0 : fem_run_start_overlaps(&system, contact, notes->overlaps);
   for (int k = 0; k < count; k++) note(notes, true, notes->overlaps[k]);

@@ -12,7 +12,7 @@ void contact_imprint_find(const ContactFieldPair *fields, const ContactPatch *pa
   for (int k = patch->pair_begin; k < patch->pair_end; k++) {
     const ContactFieldPair *field = &fields[k];
     double force = vec3_length(vec3_at(field->force));
-    if (!(field->energy > 0)) continue;
+    if (!(force > 0)) continue;
     moment = vec3_add(moment, vec3_scale(force, vec3_at(field->centroid)));
     interface->pressed += force;
   }

@@ -124,7 +124,7 @@ Status fem_run_checkpoint_take(FemRunState *run, double force_scale, double driv
 // The last accepted state. What a part between two checkpoints needs besides is left out.
 static Status write_end(FemRunState *run) {
   FemCheckpoint end;
-  if (run->model->scene->checkpoint_frames == 0 || !run->system.model || run->next_frame == 0)
+  if (run->model->scene->checkpoint_frames == 0 || !run->system.is_whole || run->next_frame == 0)
     return STATUS_OK;
   fem_system_scatter(&run->system, run->time, run->u, run->v, &run->trial);
   TRY(fem_restart_collect(&end, &run->system, &run->trial, run->u, run->v, run->result));
