@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#ifndef _GNU_SOURCE
+#define _GNU_SOURCE // dladdr1
+#endif
 #include "overlap/foreign/library.h"
 
 #include <dlfcn.h>
 #include <errno.h>
+#include <link.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -10,6 +14,8 @@
 #include <unistd.h>
 
 #include "base/memory.h"
+#include "overlap/foreign/elf.h"
+#include "overlap/foreign/guard.h"
 
 typedef struct Library {
   void *handle;
@@ -20,8 +26,10 @@ typedef struct Library {
 
 static void close_library(void *self) {
   Library *library = self;
+  overlap_foreign_guard_begin(library->path);
   if (library->model && library->model->close) library->model->close(library->self);
   if (library->handle) dlclose(library->handle);
+  overlap_foreign_guard_end();
   memory_free(library);
 }
 
@@ -33,7 +41,9 @@ static Status fail_with(const Library *library, int failed, const char *why) {
 static Status ask(void *self, const TetlapModelBatch *batch) {
   Library *library = self;
   char why[1024] = "";
+  overlap_foreign_guard_begin(library->path);
   int failed = library->model->evaluate(library->self, batch, why, sizeof why);
+  overlap_foreign_guard_end();
   why[sizeof why - 1] = 0;
   return failed ? fail_with(library, failed, why) : STATUS_OK;
 }
@@ -41,7 +51,9 @@ static Status ask(void *self, const TetlapModelBatch *batch) {
 static Status pull(void *self, const TetlapModelPull *asked) {
   Library *library = self;
   char why[1024] = "";
+  overlap_foreign_guard_begin(library->path);
   int failed = library->model->pull_back(library->self, asked, why, sizeof why);
+  overlap_foreign_guard_end();
   why[sizeof why - 1] = 0;
   return failed ? fail_with(library, failed, why) : STATUS_OK;
 }
@@ -65,6 +77,7 @@ static Status load(Library *library) {
   if (snprintf(here, sizeof here, "%s%s", strchr(library->path, '/') ? "" : "./", library->path) >=
       (int)sizeof here)
     return status_fail(STATUS_INPUT, "%s: the path is too long", library->path);
+  TRY(overlap_foreign_elf_check(library->path));
   library->handle = dlopen(here, RTLD_NOW | RTLD_LOCAL);
   if (library->handle) return STATUS_OK;
   return status_fail(STATUS_INPUT,
@@ -96,15 +109,29 @@ static Status open_model(Library *library) {
                      why[0] ? ": " : "", why);
 }
 
+// Whether a symbol that was found is a variable, which must not be called.
+static bool is_variable(const void *address) {
+  Dl_info info;
+  const ElfW(Sym) *symbol = NULL;
+  return dladdr1(address, &info, (void **)&symbol, RTLD_DL_SYMENT) && symbol &&
+         ELF64_ST_TYPE(symbol->st_info) == STT_OBJECT; // that of 32 bits is the same
+}
+
 static Status find_model(Library *library) {
   const TetlapModel *(*find)(void);
   TRY(load(library));
-  *(void **)&find = dlsym(library->handle, "tetlap_model");
+  void *const found = dlsym(library->handle, "tetlap_model");
+  *(void **)&find = found;
   if (!find)
     return status_fail(
         STATUS_INPUT,
         "%s: exports no function 'tetlap_model': tetlap/model.h says what a model's library has",
         library->path);
+  if (is_variable(found))
+    return status_fail(STATUS_INPUT,
+                       "%s: its 'tetlap_model' is a variable, expected a function that returns the struct's "
+                       "address, as tetlap/model.h has it",
+                       library->path);
   library->model = find();
   Status status = check(library);
   if (!status) return open_model(library);
@@ -117,7 +144,9 @@ Status overlap_foreign_library_open(OverlapForeignPort *port, const char *path) 
   Library *library = memory_zeroed(1, sizeof *library + length);
   if (!library) return status_no_memory("a model's library");
   memcpy(library->path, path, length);
+  overlap_foreign_guard_begin(library->path);
   Status status = find_model(library);
+  overlap_foreign_guard_end();
   if (status) {
     close_library(library);
     return status;

@@ -5,8 +5,8 @@
 
 #include "overlap/foreign/port.h"
 
-// STATUS_IO: there is no such file. STATUS_INPUT: it is no library for this machine, exports no
-// `tetlap_model`, or was built for another version of the interface; the message says which.
+// STATUS_IO: there is no such file. STATUS_INPUT: it is no whole library for this machine, exports no
+// function `tetlap_model`, or was built for another version of the interface; the message says which.
 Status overlap_foreign_library_open(OverlapForeignPort *port, const char *path);
 
 #endif

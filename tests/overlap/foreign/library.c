@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Libraries that are wrong in one way each (test_foreign_library.c), chosen by WRONG.
+#if WRONG == 22
+#define tetlap_model function_of_it // the name is that of a variable
+#endif
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <tetlap/model.h>
 
@@ -26,7 +30,9 @@ enum {
   PULLS_NAN,
   DOUBTS_SMOOTHLY,
   RANGED,
-  RANGED_WRONG
+  RANGED_WRONG,
+  EXITS,
+  VARIABLE
 };
 
 enum { PULLS_BACK = WRONG == PULLS || WRONG == PULLS_WRONG || WRONG == PULLS_NAN };
@@ -95,6 +101,7 @@ static int evaluate(void *self, const TetlapModelBatch *batch, char *message, si
         batch->doubt_gradient[24 * i + v] = 5e-7 * (2 * x[v] * (1 + x[0]) + (v == 0) * sum);
     }
   }
+  if (WRONG == EXITS) exit(0);
   if (WRONG == SPOILS) memset((double *)batch->pairs, 0xFF, 24 * batch->count * sizeof(double));
   if (WRONG != EVALUATE_FAILS) return 0;
   snprintf(message, size, "the card fell out");
@@ -143,3 +150,9 @@ const TetlapModel *tetlap_model(void) {
                                                          : NULL};
   return &model;
 }
+
+#if WRONG == 22
+#undef tetlap_model
+extern const int tetlap_model;
+const int tetlap_model = 1;
+#endif

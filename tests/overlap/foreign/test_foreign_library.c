@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Libraries of users (overlap/foreign/library.h). The oracles are `clip` and what library.c says.
 #include <dlfcn.h>
+#include <limits.h>
 #include <math.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -44,6 +45,7 @@ START_TEST(libraries_that_are_wrong) {
                {TETLAP_MODEL_2, "version 99", false},
                {TETLAP_MODEL_3, "no `size", false},
                {TETLAP_MODEL_4, "no `evaluate`", false},
+               {TETLAP_MODEL_22, "its 'tetlap_model' is a variable, expected a function", false},
                {TETLAP_MODEL_20, "its range is 'radius 2 to 1', expected 'radius A to B, first", false},
                {TETLAP_MODEL_5, "(3): weights of 1 GB are not there", false},
                {TETLAP_MODEL_6, "failed with 4: the card fell out", true},
@@ -55,6 +57,51 @@ START_TEST(libraries_that_are_wrong) {
       expect_refused(cases[i].path, STATUS_INPUT, cases[i].says);
   expect_refused("none.so", STATUS_IO, "none.so: cannot be opened");
   expect_refused(TETLAP_SOURCE_DIR "/tests/overlap/foreign/library.so", STATUS_IO, "cannot be opened");
+}
+END_TEST
+
+// Copies the first `size` bytes of a library; of all of them where it has fewer. Returns how many it has.
+static long copy_part(const char *path, long size, const char *to) {
+  FILE *from = fopen(path, "rb"), *into = fopen(to, "wb");
+  long count = 0;
+  ck_assert(from && into);
+  for (int c; count < size && (c = fgetc(from)) != EOF; count++) fputc(c, into);
+  fclose(from), fclose(into);
+  return count;
+}
+
+// Without the check, touching what is not there is a bus error.
+START_TEST(a_library_that_is_cut_off_is_refused) {
+  char folder[] = "/tmp/tetlap-foreign-XXXXXX", path[100];
+  OverlapModel model;
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/part.so", folder);
+  const long whole = copy_part(TETLAP_MODEL_0, LONG_MAX, path);
+  open_model(&model, path);
+  overlap_model_destroy(&model);
+  const long sizes[] = {64, 1000, 5000, whole / 2, whole - 1};
+  for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+    copy_part(TETLAP_MODEL_0, sizes[k], path);
+    expect_refused(path, STATUS_INPUT, "part.so: is cut off: it has");
+  }
+  copy_part(TETLAP_MODEL_0, 10, path);
+  expect_refused(path, STATUS_INPUT, "part.so: cannot be loaded");
+  copy_part(TETLAP_SOURCE_DIR "/README.md", 5000, path);
+  expect_refused(path, STATUS_INPUT, "part.so: cannot be loaded");
+  ck_assert(remove(path) == 0 && remove(folder) == 0);
+}
+END_TEST
+
+START_TEST(a_library_that_ends_the_program_does_not_end_it_well) {
+  char text[20000], folder[] = "/tmp/tetlap-foreign-XXXXXX", words[1000];
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  snprintf(words, sizeof words,
+           "run %s/examples/02_two_blocks.yaml --set time.end=0.1 --set output.vtu=false --overlap %s -o %s",
+           TETLAP_SOURCE_DIR, TETLAP_MODEL_21, folder);
+  ck_assert_int_eq(run_program(words, text), 70);
+  ck_assert_msg(strstr(text, TETLAP_MODEL_21 ": called exit()"), "%s", text);
+  snprintf(words, sizeof words, "--version; rm -r %s", folder);
+  run_program(words, text);
 }
 END_TEST
 
@@ -393,6 +440,8 @@ int main(void) {
   draw();
   tcase_add_test(cases, a_library_answers_as_clip);
   tcase_add_test(cases, libraries_that_are_wrong);
+  tcase_add_test(cases, a_library_that_is_cut_off_is_refused);
+  tcase_add_test(cases, a_library_that_ends_the_program_does_not_end_it_well);
   tcase_add_test(cases, what_is_written_beyond_an_array_ends_the_run);
   tcase_add_test(cases, the_example_writes_what_it_is_asked_for_and_no_more);
   tcase_add_test(cases, what_a_model_does_to_its_pairs_stays_with_it);
