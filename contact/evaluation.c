@@ -9,6 +9,7 @@
 #include "base/machine/clock.h"
 #include "base/memory.h"
 #include "base/ranks.h"
+#include "contact/pressure/field_pull.h"
 #include "contact/pressure/patch/imprint.h"
 #include "contact/rest.h"
 #include "contact/search/bounds.h"
@@ -509,24 +510,41 @@ static void join_slopes(const double *gradients, const double *rows, size_t coun
   }
 }
 
-Status contact_evaluation_find_slopes(ContactEvaluation *evaluation, const ContactLayout *layout,
-                                      const OverlapModel *model) {
+static void find_slopes_by_clipping(ContactEvaluation *evaluation, const ContactLayout *layout) {
+#pragma omp parallel for schedule(static) if (evaluation->mesh_pair_count > 64)
+  for (int k = 0; k < evaluation->mesh_pair_count; k++)
+    contact_field_slopes(layout, &evaluation->pairs[k], evaluation->coordinates + 24 * (size_t)k,
+                         &evaluation->fields[k], evaluation->slopes + 96 * (size_t)k);
+}
+
+static Status find_slopes_by_model(ContactEvaluation *evaluation, const ContactLayout *layout,
+                                   const OverlapModel *model) {
   size_t count = (size_t)evaluation->mesh_pair_count;
-  if (evaluation->has_slopes) return STATUS_OK;
-  double *told = memory_zeroed(97 * count + 1, sizeof *told);
-  bool fits = told && memory_reserve((void **)&evaluation->slopes, &evaluation->slope_capacity,
-                                     96 * count + 1, sizeof *told);
-  double *volumes = told, *gradients = told + count, *rows = told + 25 * count;
+  double *told = memory_zeroed(97 * count + 1, sizeof *told), *volumes = told, *gradients = told + count,
+         *rows = told + 25 * count;
   OverlapBatch batch = {
       .pair_count = (int)count, .pairs = evaluation->coordinates, .volume = volumes, .gradient = gradients};
-  Status status = fits ? STATUS_OK : status_no_memory("derivatives of overlaps");
+  Status status = told ? STATUS_OK : status_no_memory("derivatives of overlaps");
   if (!status && overlap_model_wants_origins(model))
     status = find_origins(evaluation, layout, &batch.origins);
   if (!status) status = overlap_slopes_eval(model, &batch, rows);
   if (!status) join_slopes(gradients, rows, count, evaluation->slopes);
-  evaluation->has_slopes = !status;
   memory_free(told);
   return status;
+}
+
+Status contact_evaluation_find_slopes(ContactEvaluation *evaluation, const ContactLayout *layout,
+                                      const OverlapModel *model) {
+  if (evaluation->has_slopes) return STATUS_OK;
+  if (!memory_reserve((void **)&evaluation->slopes, &evaluation->slope_capacity,
+                      96 * (size_t)evaluation->mesh_pair_count + 1, sizeof *evaluation->slopes))
+    return status_no_memory("derivatives of overlaps");
+  if (overlap_slopes_are_there(model))
+    TRY(find_slopes_by_model(evaluation, layout, model));
+  else
+    find_slopes_by_clipping(evaluation, layout);
+  evaluation->has_slopes = true;
+  return STATUS_OK;
 }
 
 Status contact_evaluation_list(ContactEvaluation *evaluation, const ContactLayout *layout,

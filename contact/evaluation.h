@@ -73,7 +73,8 @@ Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout
                               const ContactCandidateList *candidates, const OverlapModel *model,
                               bool with_shapes, double time, const double *positions);
 
-// The slopes of the last result, which the model that gave it has (overlap/slopes.h); found once.
+// The slopes of the last result, by the model that gave it if it has them (overlap/slopes.h), or by clipping,
+// with the potential `field`; found once.
 Status contact_evaluation_find_slopes(ContactEvaluation *evaluation, const ContactLayout *layout,
                                       const OverlapModel *model);
 

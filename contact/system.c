@@ -431,18 +431,17 @@ double contact_system_energy_of(const ContactEvaluation *evaluation, int interfa
 Status contact_system_turn(ContactSystem *system, const ContactEvaluation *evaluation, int interface,
                            const ContactStiffnessSink *sink) {
   ContactStiffnessWay way = {.is_turned = true};
-  TRY(contact_system_slopes(system, evaluation, &way.slopes));
+  if (overlap_slopes_are_there(system->layout.def.model))
+    TRY(contact_system_slopes(system, evaluation, &way.slopes));
   return contact_stiffness_add(&system->stiffness, &system->layout, evaluation, interface, &way,
                                contact_system_sink(system, sink));
 }
 
 Status contact_system_slopes(ContactSystem *system, const ContactEvaluation *evaluation,
                              const double **slopes) {
-  const OverlapModel *model = system->layout.def.model;
   *slopes = NULL;
-  if (!overlap_slopes_are_there(model)) return STATUS_OK;
   assert(evaluation == &system->evaluation);
-  TRY(contact_evaluation_find_slopes(&system->evaluation, &system->layout, model));
+  TRY(contact_evaluation_find_slopes(&system->evaluation, &system->layout, system->layout.def.model));
   *slopes = evaluation->slopes;
   return STATUS_OK;
 }
@@ -466,7 +465,6 @@ Status contact_system_pull(ContactSystem *system, const ContactEvaluation *evalu
                            const double *forces, double weight, double *answers) {
   const double *slopes, *spread = contact_system_spread(system, forces);
   TRY(contact_system_slopes(system, evaluation, &slopes));
-  assert(slopes);
   for (int k = 0; k < evaluation->mesh_pair_count; k++) {
     const ContactPair *pair = &evaluation->pairs[k];
     const ContactFieldPair *field = &evaluation->fields[k];

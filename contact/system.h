@@ -112,8 +112,8 @@ void contact_system_areas(const ContactSystem *system, const ContactEvaluation *
 // not symmetric. With the potential `field`; laws with a model that clips.
 Status contact_system_turn(ContactSystem *system, const ContactEvaluation *evaluation, int interface,
                            const ContactStiffnessSink *sink);
-// ∂V/∂x and ∂x̄/∂x of the evaluation's pairs of meshes (mesh_pair_count, 4, 24), the system's; NULL of a model
-// that clips, whose polyhedra tell them.
+// ∂V/∂x and ∂x̄/∂x of the evaluation's pairs of meshes (mesh_pair_count, 4, 24), the system's, found once: by
+// the overlap model, or by clipping where it has none. With the potential `field`.
 Status contact_system_slopes(ContactSystem *system, const ContactEvaluation *evaluation,
                              const double **slopes);
 

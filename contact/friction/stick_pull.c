@@ -13,7 +13,8 @@
 // ∂g/∂ of what a pair hands over.
 typedef struct PairSlopes {
   ContactFieldSlopes field;
-  double gap[3]; // by Δ of side 0 as slave
+  double gap[3];            // by Δ of side 0 as slave
+  double deformation[2][9]; // by F of either tetrahedron
 } PairSlopes;
 
 typedef struct Work {
@@ -23,10 +24,11 @@ typedef struct Work {
   const ContactStickLast *last;
   double last_time;
   const ContactStickPull *pull;
-  const double *forces; // ∂g/∂f by the vertices of the contact mesh; NULL: 0
-  const double *slopes; // of V and x̄, of a model that has its own; NULL: clipping has them
-  PairSlopes *pairs;    //                                                  (pair_count)
-  double *shares;       // ∂g/∂ of a touch's share, by its place in stick->order
+  const double *forces;         // ∂g/∂f by the vertices of the contact mesh; NULL: 0
+  const double *slopes;         // of V and x̄
+  PairSlopes *pairs;            //                                                  (pair_count)
+  double (*deformations)[2][9]; // F of either tetrahedron              (pair_count)
+  double *shares;               // ∂g/∂ of a touch's share, by its place in stick->order
 } Work;
 
 static bool is_wanted(const Work *work, int interface) {
@@ -232,21 +234,21 @@ static Vec3 slope_of_node(const Work *work, const ContactStickNode *node) {
   return sum;
 }
 
-// Adds to the deformation of a touch's tetrahedron; what its share gives.
+static void find_deformations(const Work *work) {
+  for (int i = 0; i < 2 * work->stick->pair_count; i++)
+    if (is_carried(work, i / 2, i % 2))
+      contact_deformation_find(tet_of(work, i / 2, i % 2), work->stick->rest, work->evaluation->positions,
+                               work->deformations[i / 2][i % 2]);
+}
+
+// Of F = Σ share F of the touches' tetrahedra; what a touch's share gives.
 static double pull_deformation(const Work *work, int t, const double by_deformation[9]) {
-  const int *tet = tet_of(work, pair_of(t), side_of(t));
-  double F[9], sum = 0, share = share_of(work, t);
-  Vec3 rows[3], first = {0, 0, 0};
-  contact_deformation_find(tet, work->stick->rest, work->evaluation->positions, F);
-  for (int e = 0; e < 9; e++) sum += by_deformation[e] * F[e];
-  double det = contact_deformation_rows(tet, work->stick->rest, rows);
-  int interface = work->stick->pairs[pair_of(t)].interface;
-  for (int k = 0; k < 3; k++) {
-    Vec3 slope = vec3_scale(share / det, contact_deformation_times(by_deformation, rows[k]));
-    add_place(work, interface, side_of(t), true, tet[k + 1], slope);
-    first = vec3_sub(first, slope);
+  const double *F = work->deformations[pair_of(t)][side_of(t)];
+  double *by = work->pairs[pair_of(t)].deformation[side_of(t)], sum = 0, share = share_of(work, t);
+  for (int e = 0; e < 9; e++) {
+    sum += by_deformation[e] * F[e];
+    by[e] += share * by_deformation[e];
   }
-  add_place(work, interface, side_of(t), true, tet[0], first);
   return sum;
 }
 
@@ -346,6 +348,18 @@ static void pull_gap(const Work *work, int k) {
   }
 }
 
+static void pull_tet(const Work *work, int k, int side) {
+  const int *tet = tet_of(work, k, side), interface = work->stick->pairs[k].interface;
+  Vec3 rows[3], first = {0, 0, 0};
+  double det = contact_deformation_rows(tet, work->stick->rest, rows);
+  for (int v = 0; v < 3; v++) {
+    Vec3 slope = vec3_scale(1 / det, contact_deformation_times(work->pairs[k].deformation[side], rows[v]));
+    add_place(work, interface, side, true, tet[v + 1], slope);
+    first = vec3_sub(first, slope);
+  }
+  add_place(work, interface, side, true, tet[0], first);
+}
+
 // A shape's two ways, at the last state and now, are its x̄ then against its x̄ now.
 static void pull_pair(const Work *work, int k) {
   const ContactEvaluation *evaluation = work->evaluation;
@@ -360,7 +374,7 @@ static void pull_pair(const Work *work, int k) {
                              evaluation->pair_forces + 24 * (size_t)k, by, slope);
   else
     contact_field_pull(work->layout, cells, coordinates, &evaluation->fields[k],
-                       work->slopes ? work->slopes + 96 * (size_t)k : NULL, by, slope,
+                       work->slopes + 96 * (size_t)k, by, slope,
                        work->pull->answers ? work->pull->answers + 4 * (size_t)k : NULL);
   for (int z = 0; z < 8 && is_carried(work, k, z / 4); z++)
     add_place(work, cells->interface, z / 4, true, tet_of(work, k, z / 4)[z % 4], vec3_at(slope + 3 * z));
@@ -368,6 +382,7 @@ static void pull_pair(const Work *work, int k) {
 
 static void pull_all(const Work *work) {
   const ContactStick *stick = work->stick;
+  find_deformations(work);
   for (int k = 0; k < stick->pair_count && work->forces; k++)
     if (is_wanted(work, stick->pairs[k].interface)) pull_shared_forces(work, k);
   for (int n = 0; n < stick->node_count; n++)
@@ -376,6 +391,8 @@ static void pull_all(const Work *work) {
     if (!is_wanted(work, stick->pairs[k].interface)) continue;
     pull_gap(work, k);
     pull_pair(work, k);
+    for (int side = 0; side < 2; side++)
+      if (is_carried(work, k, side)) pull_tet(work, k, side);
   }
 }
 
@@ -391,11 +408,15 @@ Status contact_stick_pull(const ContactStick *stick, ContactSystem *system,
                .pull = pull,
                .forces = pull->forces ? contact_system_spread(system, pull->forces) : NULL,
                .pairs = memory_zeroed(pairs + 1, sizeof(PairSlopes)),
+               .deformations = memory_zeroed(pairs + 1, sizeof *work.deformations),
                .shares = memory_zeroed(8 * pairs + 1, sizeof(double))};
-  Status status = work.pairs && work.shares ? STATUS_OK : status_no_memory("derivatives of friction");
+  Status status = work.pairs && work.deformations && work.shares
+                      ? STATUS_OK
+                      : status_no_memory("derivatives of friction");
   if (!status) status = contact_system_slopes(system, evaluation, &work.slopes);
   if (!status) pull_all(&work);
   memory_free(work.pairs);
+  memory_free(work.deformations);
   memory_free(work.shares);
   return status;
 }

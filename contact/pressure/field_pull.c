@@ -98,37 +98,48 @@ static void pull_sides(const ContactSide sides[2], const Means *means, double sl
     }
 }
 
-// What of m_z follows from the volume of P.
-static void pull_volume(const ContactSide sides[2], const double lambda[8], double volume, const Means *means,
-                        double slope[24]) {
-  double whole = 0;
-  Vec3 drift = {0, 0, 0};
-  for (int z = 0; z < 8; z++) whole += means->moments[z] * lambda[z] * volume;
-  for (int v = 0; v < 4; v++) drift = vec3_add(drift, vec3_scale(means->moments[4 + v], sides[1].slope[v]));
-  for (int v = 0; v < 4; v++) {
-    add_to(slope, v, vec3_scale(whole, sides[0].slope[v]));
-    add_to(slope, v, vec3_scale(lambda[v] * volume, drift));
-    add_to(slope, 4 + v, vec3_scale(-lambda[4 + v] * volume, drift));
-  }
-}
-
-// What of m_z follows from the faces of B that bound P.
-static void pull_faces(const ContactClipped *clipped, const Means *means, double slope[24]) {
+// What of ∂m_a/∂x, of A's vertices, follows from the faces of B that bound P.
+static void add_faces(const ContactClipped *clipped, double moments[4][24]) {
   const OverlapClipFrame *frame = &clipped->polytope.frame[1];
   for (int i = 0; i < clipped->triangle_count; i++) {
     const ContactTriangle *triangle = &clipped->triangles[i];
     if (triangle->face < 4) continue;
-    double mean[3] = {0, 0, 0}, sign = frame->det < 0 ? 1 : -1;
+    double sign = frame->det < 0 ? 1 : -1, whole[8];
     const double *corner[3];
-    for (int k = 0; k < 3; k++) {
-      corner[k] = clipped->polytope.vertex[triangle->vertex[k]];
-      for (int z = 0; z < 8; z++) mean[k] += means->moments[z] * corner[k][z];
-    }
+    for (int k = 0; k < 3; k++) corner[k] = clipped->polytope.vertex[triangle->vertex[k]];
+    for (int z = 0; z < 8; z++) whole[z] = corner[0][z] + corner[1][z] + corner[2][z];
     Vec3 area = vec3_scale(sign * triangle->share / 24, frame->normal[triangle->face % 4]); // of S_f twice it
-    for (int z = 0; z < 8; z++) {
-      double sum = (mean[0] + mean[1] + mean[2]) * (corner[0][z] + corner[1][z] + corner[2][z]);
-      for (int k = 0; k < 3; k++) sum += mean[k] * corner[k][z];
-      add_to(slope, z, vec3_scale(z < 4 ? -sum : sum, area));
+    for (int a = 0; a < 4; a++)
+      for (int z = 0; z < 8; z++) {
+        double sum = whole[a] * whole[z];
+        for (int k = 0; k < 3; k++) sum += corner[k][a] * corner[k][z];
+        add_to(moments[a], z, vec3_scale(z < 4 ? -sum : sum, area));
+      }
+  }
+}
+
+// V = Σ m_a and V x̄ = Σ m_a x_a over A's vertices.
+void contact_field_slopes(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
+                          const ContactFieldPair *field, double slopes[96]) {
+  ContactClipped clipped;
+  double settled[24], lambda[4], moments[4][24] = {{0}};
+  const ContactSide side = contact_side_of(layout, pair->cells[0], coordinates);
+  contact_side_locate(&side, vec3_at(field->centroid), lambda);
+  memcpy(settled, coordinates, sizeof settled);
+  contact_layout_unsettle_pair(layout, pair, settled);
+  if (contact_clipped_make(&clipped, layout, pair, settled)) {
+    for (int i = 0; i < 16; i++)
+      add_to(moments[i / 4], i % 4, vec3_scale(lambda[i / 4] * field->volume, side.slope[i % 4]));
+    add_faces(&clipped, moments);
+  }
+  memset(slopes, 0, 96 * sizeof *slopes);
+  for (int a = 0; a < 4; a++) {
+    double arm[3];
+    vec3_store(arm, vec3_scale(1 / field->volume, vec3_sub(side.x[a], vec3_at(field->centroid))));
+    for (int k = 0; k < 24; k++) slopes[k] += moments[a][k];
+    for (int c = 0; c < 3; c++) {
+      for (int k = 0; k < 24; k++) slopes[24 * (c + 1) + k] += arm[c] * moments[a][k];
+      slopes[24 * (c + 1) + 3 * a + c] += lambda[a];
     }
   }
 }
@@ -145,22 +156,9 @@ static void fold_slopes(const ContactLayout *layout, const ContactPair *pair, co
     }
 }
 
-// m_z = V λ_z(x̄) by the polyhedron.
-static void pull_clipped(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
-                         const ContactSide sides[2], const double lambda[8], double volume,
-                         const Means *means, double own[24]) {
-  ContactClipped clipped;
-  double settled[24];
-  memcpy(settled, coordinates, sizeof settled);
-  contact_layout_unsettle_pair(layout, pair, settled);
-  if (!contact_clipped_make(&clipped, layout, pair, settled)) return;
-  pull_volume(sides, lambda, volume, means, own);
-  pull_faces(&clipped, means, own);
-}
-
-// The same by the model's V and x̄: λ_z = ∇λ_z · (x̄ − x), where the cell's own vertices move with x.
-static void pull_model(const ContactSide sides[2], const double lambda[8], double volume, const Means *means,
-                       const double slopes[96], double own[24], double *answer) {
+// m_z = V λ_z(x̄), λ_z = ∇λ_z · (x̄ − x), where the cell's own vertices move with x.
+static void pull_moments(const ContactSide sides[2], const double lambda[8], double volume,
+                         const Means *means, const double slopes[96], double own[24], double *answer) {
   double by[4] = {0, 0, 0, 0}; // V, x̄
   for (int z = 0; z < 8; z++) {
     Vec3 turn = vec3_scale(volume * means->moments[z], sides[z / 4].slope[z % 4]);
@@ -174,7 +172,7 @@ static void pull_model(const ContactSide sides[2], const double lambda[8], doubl
 }
 
 void contact_field_pull(const ContactLayout *layout, const ContactPair *pair, const double coordinates[24],
-                        const ContactFieldPair *field, const double *slopes, const ContactFieldSlopes *by,
+                        const ContactFieldPair *field, const double slopes[96], const ContactFieldSlopes *by,
                         double slope[24], double answer[4]) {
   ContactSide sides[2];
   Means means;
@@ -185,10 +183,7 @@ void contact_field_pull(const ContactLayout *layout, const ContactPair *pair, co
   }
   find_means(layout, pair, sides, field, by, &means);
   pull_sides(sides, &means, own);
-  if (slopes)
-    pull_model(sides, lambda, field->volume, &means, slopes, own, answer);
-  else
-    pull_clipped(layout, pair, coordinates, sides, lambda, field->volume, &means, own);
+  pull_moments(sides, lambda, field->volume, &means, slopes, own, answer);
   fold_slopes(layout, pair, own, slope);
 }
 

@@ -360,11 +360,11 @@ Status fem_system_renumber(FemSystem *system) {
 }
 
 static Status assemble(FemSystem *system, const FemState *state, double k, double d, double m,
-                       FemMatrix *matrix) {
+                       const FemEffectOps *left_out, FemMatrix *matrix) {
   TRY(check_stop(system));
   fem_matrix_zero(matrix);
   for (int i = 0; i < system->effect_count; i++) {
-    if (!system->effects[i].ops->add_jacobian) continue;
+    if (!system->effects[i].ops->add_jacobian || system->effects[i].ops == left_out) continue;
     double began = clock_wall_s();
     TRY(system->effects[i].ops->add_jacobian(system->effects[i].self, state, k, d, matrix));
     system->costs[i].jacobian_s += clock_wall_s() - began;
@@ -376,7 +376,12 @@ static Status assemble(FemSystem *system, const FemState *state, double k, doubl
 
 Status fem_system_assemble(FemSystem *system, const FemState *state, double k, double d, double m,
                            FemMatrix *matrix) {
-  return ranks()->worst(assemble(system, state, k, d, m, matrix));
+  return fem_system_assemble_without(system, NULL, state, k, d, m, matrix);
+}
+
+Status fem_system_assemble_without(FemSystem *system, const FemEffectOps *left_out, const FemState *state,
+                                   double k, double d, double m, FemMatrix *matrix) {
+  return ranks()->worst(assemble(system, state, k, d, m, left_out, matrix));
 }
 
 static Status begin(FemSystem *system, const FemState *state, double next_step) {

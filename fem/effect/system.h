@@ -72,6 +72,9 @@ Status fem_system_renumber(FemSystem *system);
 // matrix = k·K + d·D + m·M.
 Status fem_system_assemble(FemSystem *system, const FemState *state, double k, double d, double m,
                            FemMatrix *matrix);
+// The same but for one effect.
+Status fem_system_assemble_without(FemSystem *system, const FemEffectOps *left_out, const FemState *state,
+                                   double k, double d, double m, FemMatrix *matrix);
 
 // A run begins, or goes on, at this state, which is accepted, whatever has been before: effects begin to
 // remember, and make lists for a step of that length [s]; pattern and matrix are those of this state.

@@ -9,8 +9,7 @@
 #include "fem/effect/contact/contact.h"
 #include "fem/element/quadratic_face.h"
 
-// Of the distance at which contact lays pairs out; none where obstacles move by themselves, and with
-// friction, which lays out what there is.
+// Of the distance at which contact lays pairs out; none where obstacles move by themselves.
 static const double SHARE_OF_REACH = 1.0 / 8;
 
 static Status find_learned(FemTangent *tangent) {
@@ -28,7 +27,7 @@ Status fem_tangent_create(FemTangent *tangent, FemSystem *system) {
   if (contact) {
     tangent->contact = fem_effect_contact_system(contact);
     tangent->interface_count = contact_system_layout(tangent->contact)->interface_count;
-    if (system->model->scene->obstacle_count == 0 && !tangent->stick)
+    if (system->model->scene->obstacle_count == 0)
       tangent->reach = SHARE_OF_REACH * fem_effect_contact_reach(contact);
   }
   tangent->every_dof = memory_zeroed(count, sizeof *tangent->every_dof);
@@ -72,24 +71,13 @@ static Status lay_out(FemTangent *tangent) {
   return STATUS_OK;
 }
 
-static void take_outer(void *self, int count, const int *vertices, const double *w, double scale) {
-  fem_matrix_add_outer(self, count, vertices, w, -scale);
-}
-
-static void take_dense(void *self, int count, const int *vertices, const double *matrix) {
-  fem_matrix_add(self, count, vertices, matrix, -1);
-}
-
 // As if nothing moved, where damping has no stiffness.
 Status fem_tangent_find(FemTangent *tangent, const FemState *state) {
   FemState still = *state;
   tangent->state = state;
   still.velocities = tangent->still;
   TRY(lay_out(tangent));
-  TRY(fem_system_assemble(tangent->system, &still, 1, 0, 0, &tangent->stiffness));
-  if (tangent->stick)
-    TRY(fem_effect_stick_add_stiffness(tangent->stick, state,
-                                       &(ContactStiffnessSink){&tangent->stiffness, take_outer, take_dense}));
+  TRY(fem_system_assemble_without(tangent->system, &fem_effect_stick, &still, 1, 0, 0, &tangent->stiffness));
   return find_learned(tangent);
 }
 

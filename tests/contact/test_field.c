@@ -101,6 +101,44 @@ START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
 }
 END_TEST
 
+// V and x̄ of a pair where it is moved along a way.
+static void answers_at(const Scene *scene, const double coordinates[24], const double way[24], double share,
+                       double answers[4]) {
+  double there[24];
+  for (int i = 0; i < 24; i++) there[i] = coordinates[i] + share * way[i];
+  ck_assert_ok(overlap_model_eval(
+      &scene->model,
+      &(OverlapBatch){.pair_count = 1, .pairs = there, .volume = answers, .centroid = answers + 1}));
+}
+
+START_TEST(volumes_and_centroids_change_by_their_slopes) {
+  static const double STEP = 1e-6, LEAST = 1e-4;
+  Scene scene;
+  const double *slopes;
+  int count = 0;
+  press_on(&scene, ON_BODY);
+  start(&scene, "clip");
+  if (_i) ck_assert_int_gt(fold(&scene), 10);
+  const ContactEvaluation *evaluation = evaluated_at(scene.system, 0, scene.blocks.x);
+  ck_assert_ok(contact_system_slopes(scene.system, evaluation, &slopes));
+  Random random = random_seeded(3, 0);
+  for (int k = 0; k < evaluation->mesh_pair_count; k++) {
+    double way[24], above[4], below[4];
+    if (evaluation->fields[k].volume < LEAST) continue; // it is thin beside the step
+    count++;
+    for (int i = 0; i < 24; i++) way[i] = random_between(&random, -1, 1);
+    answers_at(&scene, evaluation->coordinates + 24 * k, way, STEP, above);
+    answers_at(&scene, evaluation->coordinates + 24 * k, way, -STEP, below);
+    for (int a = 0; a < 4; a++) {
+      double slope = product_dot(slopes + 96 * k + 24 * a, way, 24);
+      ck_assert_near((above[a] - below[a]) / (2 * STEP), slope, 1e-5);
+    }
+  }
+  ck_assert_int_gt(count, 10);
+  destroy(&scene);
+}
+END_TEST
+
 // ---- Balance.
 
 static const char *const MODELS[] = {"clip", "clip32", "clip-scalar", "exact", "cgal"};
@@ -547,6 +585,7 @@ int main(void) {
   tcase_add_test(tests, forces_are_minus_the_gradient_where_a_body_is_folded);
   tcase_add_test(tests, a_pair_of_a_folded_body_covers_an_area_that_cells_have);
   tcase_add_loop_test(tests, stiffness_is_minus_the_derivative_of_the_forces, 0, KINDS + 1);
+  tcase_add_loop_test(tests, volumes_and_centroids_change_by_their_slopes, 0, 2);
   tcase_add_loop_test(tests, every_pair_balances_with_every_model, 0, MODEL_COUNT);
   tcase_add_test(tests, a_model_without_its_own_centroid_presses_and_balances);
   tcase_add_test(tests, cells_fill_the_bodies_and_slope_by_one_on_every_outer_face);

@@ -233,10 +233,3 @@ Status fem_effect_stick_pull(void *effect, const FemState *state, const ContactS
   ContactStickLast last = last_of(stick, state);
   return contact_stick_pull(&stick->law, stick->contact, evaluation, &last, state->last->time, pull);
 }
-
-Status fem_effect_stick_add_stiffness(void *effect, const FemState *state, const ContactStiffnessSink *sink) {
-  Stick *stick = effect;
-  const ContactEvaluation *evaluation;
-  TRY(evaluate(stick, state, &evaluation));
-  return contact_stick_add_stiffness(&stick->law, contact_system_sink(stick->contact, sink));
-}

@@ -12,8 +12,6 @@
 Status fem_effect_stick_evaluate(void *effect, const FemState *state, const ContactStick **law);
 // Its derivatives backwards, at a state (contact/friction/stick_pull.h).
 Status fem_effect_stick_pull(void *effect, const FemState *state, const ContactStickPull *pull);
-// Adds −∂f/∂x as far as the matrix has it, without what comes from N, n and the weights.
-Status fem_effect_stick_add_stiffness(void *effect, const FemState *state, const ContactStiffnessSink *sink);
 // Where the system's states have what it remembers.
 int fem_effect_stick_place(const void *effect);
 // A view of what it remembers, of the numbers of one of its histories.

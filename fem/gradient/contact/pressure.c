@@ -96,9 +96,8 @@ static void pull(const Patch *patch, const ContactStars *stars, int k, const dou
     contact_field_pull_shape(patch->layout, pair, evaluation->time, coordinates, &evaluation->fields[k],
                              evaluation->pair_forces + 24 * (size_t)k, by, slope);
   else
-    contact_field_pull(patch->layout, pair, coordinates, &evaluation->fields[k],
-                       slopes ? slopes + 96 * (size_t)k : NULL, by, slope,
-                       answers ? answers + 4 * (size_t)k : NULL);
+    contact_field_pull(patch->layout, pair, coordinates, &evaluation->fields[k], slopes + 96 * (size_t)k, by,
+                       slope, answers ? answers + 4 * (size_t)k : NULL);
   for (int z = 0; z < 4 * side_count(patch, k); z++) {
     int vertex = contact_layout_vertices(patch->layout, pair->cells[z / 4])[z % 4];
     contact_stars_push(stars, vertex, vec3_at(slope + 3 * z), patch->pressure->slope);
