@@ -21,6 +21,7 @@ void contact_field_press(const ContactLayout *layout, const ContactPair *pair, c
     double *weights = field->weights[t];
     sides[t] = contact_side_of(layout, pair->cells[t], coordinates + 12 * t);
     contact_side_locate(&sides[t], vec3_at(centroid), weights);
+    field->signs[t] = sides[t].sign;
     for (int v = 0; v < 4; v++) field->depths[t] += weights[v] * sides[t].depths[v];
     contact_mesh_fold(&layout->mesh, &layout->def, pair->cells[t], weights);
     vec3_store(field->slopes[t], sides[t].g);
@@ -341,7 +342,7 @@ void contact_field_press_shape(const ContactLayout *layout, const ContactPair *p
   const ContactInterfaceDef *interface = &layout->interfaces[pair->interface];
   const ContactShape *shape = &layout->def.shapes[interface->shape];
   double rest = contact_layout_tet_volume(layout, pair->cells[0]);
-  *field = (ContactFieldPair){.law = interface->law};
+  *field = (ContactFieldPair){.law = interface->law, .signs = {1, 1}};
   memset(forces, 0, 24 * sizeof *forces);
   contact_shape_press(shape, time, tet, rest, &field->volume, &field->energy, forces, NULL);
   if (!(field->volume > 0)) return;

@@ -16,6 +16,7 @@ typedef struct ContactFieldPair {
   double weighed[2];    // s_i V, s_j V: how much of A's and B's material at rest is in P; of a shape 0 [m³]
   double centroid[3];   // x̄ [m]
   double force[3];      // F_ij on side 0 [N]; N = |F_ij|
+  double signs[2];      // σ of contact/pressure/field.h: −1 where the cell is turned inside out, else 1
   double depths[2];     // σ φ_A(x̄), σ φ_B(x̄): of this point below the surface of side 0, 1 [m]
   double slopes[2][3];  // σ g_A, σ g_B
   double weights[2][4]; // λ(x̄) of the vertices of the sides' tetrahedra (contact_layout_vertices)
@@ -29,17 +30,12 @@ static inline double contact_field_secant(const ContactFieldPair *field) {
   return length > 0 ? vec3_length(vec3_at(field->force)) / length : 0;
 }
 
-// −1: the cell of that side is turned inside out, and σ of contact/pressure/field.h is; else 1.
-static inline double contact_field_sign(const ContactFieldPair *field, int side) {
-  return field->depths[side] < 0 ? -1 : 1;
-}
-
 // The area that a pair covers [m²], V F / (2 U): of a slab of thickness D over an area V = ∫ D dA,
 // F = 2 c ∫ D dA, U = c ∫ D² dA (against a shape F = c ∫ D dA, U = ½ c ∫ D² dA), so that it is
 // (∫ D dA)² / ∫ D² dA. Exact where D is even, also in squeezed cells; ¾ of the area where D falls to 0
 // linearly. F and U are those of the linear law and of σ = 1, so that it is an area in folded bodies, too.
 static inline double contact_field_area(const ContactFieldPair *field) {
-  double a = contact_field_sign(field, 0), b = contact_field_sign(field, 1);
+  double a = field->signs[0], b = field->signs[1];
   if (field->law || a < 0 || b < 0) {
     Vec3 push = vec3_sub(vec3_scale(b * field->weighed[0], vec3_at(field->slopes[1])),
                          vec3_scale(a * field->weighed[1], vec3_at(field->slopes[0])));

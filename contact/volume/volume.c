@@ -41,8 +41,10 @@ static ContactFieldPair describe(double volume, double pressure, bool is_of_shap
   Vec3 force = {0, 0, 0}, middle = {0, 0, 0};
   for (int v = 0; v < 4; v++) force = vec3_add(force, vec3_at(forces + 3 * v));
   double length = vec3_length(force), share = is_of_shape ? 1 : 0.5;
-  ContactFieldPair pair = {
-      .energy = 0.5 * pressure * volume, .volume = volume, .weighed = {volume, is_of_shape ? 0 : volume}};
+  ContactFieldPair pair = {.energy = 0.5 * pressure * volume,
+                           .volume = volume,
+                           .signs = {1, 1},
+                           .weighed = {volume, is_of_shape ? 0 : volume}};
   weigh(forces, force, pair.weights[0]);
   if (!is_of_shape) weigh(forces + 12, vec3_scale(-1, force), pair.weights[1]);
   for (int v = 0; v < (is_of_shape ? 4 : 8); v++)

@@ -181,7 +181,10 @@ static Status begin_part(FemRunState *run) {
   run->next_step = from->step;
   run->least_power = INFINITY;
   TRY(fem_formulas_check(run->model, run->time));
-  if (is_first) TRY(fem_system_create(&run->system, run->model));
+  if (is_first) {
+    fem_system_destroy(&run->system); // what is left of one that failed
+    TRY(fem_system_create(&run->system, run->model));
+  }
   TRY(fem_system_create_again(&run->system)); // the first, too: what is counted is the same
   run->system.stop = run->options->stop;
   TRY(create_states(run));

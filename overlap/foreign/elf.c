@@ -10,7 +10,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static const unsigned char CLASS = sizeof(void *) == 8 ? ELFCLASS64 : ELFCLASS32;
+static const unsigned char CLASS = sizeof(void *) == 8 ? ELFCLASS64 : ELFCLASS32,
+                           DATA = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? ELFDATA2LSB : ELFDATA2MSB;
 
 static uint64_t greater(uint64_t a, uint64_t b) {
   return a > b ? a : b;
@@ -21,10 +22,9 @@ static uint64_t end_of(uint64_t begin, uint64_t size) {
   return begin + size < begin ? UINT64_MAX : begin + size;
 }
 
-// Where the last part ends that the headers name, as far as these are there.
+// Where the last part ends that is loaded, as far as the headers are there.
 static uint64_t find_end(FILE *file, const ElfW(Ehdr) * header) {
-  uint64_t end = greater(end_of(header->e_shoff, (uint64_t)header->e_shnum * header->e_shentsize),
-                         end_of(header->e_phoff, (uint64_t)header->e_phnum * header->e_phentsize));
+  uint64_t end = end_of(header->e_phoff, (uint64_t)header->e_phnum * header->e_phentsize);
   if (header->e_phentsize != sizeof(ElfW(Phdr)) || fseeko(file, (off_t)header->e_phoff, SEEK_SET) != 0)
     return end;
   for (int p = 0; p < header->e_phnum; p++) {
@@ -44,7 +44,8 @@ Status overlap_foreign_elf_check(const char *path) {
     return status_fail(STATUS_IO, "%s: cannot be opened: %s", path, strerror(errno));
   }
   const bool is_read = fread(&header, sizeof header, 1, file) == 1 &&
-                       memcmp(header.e_ident, ELFMAG, SELFMAG) == 0 && header.e_ident[EI_CLASS] == CLASS;
+                       memcmp(header.e_ident, ELFMAG, SELFMAG) == 0 && header.e_ident[EI_CLASS] == CLASS &&
+                       header.e_ident[EI_DATA] == DATA;
   const uint64_t end = is_read ? find_end(file, &header) : 0, size = (uint64_t)about.st_size;
   fclose(file);
   if (end <= size) return STATUS_OK;

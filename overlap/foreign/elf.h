@@ -7,7 +7,7 @@
 #include "base/status.h"
 
 // STATUS_INPUT: the file ends before what its headers say (System V ABI, chapters 4 and 5). What is no ELF
-// file of this machine's class is left to dlopen.
+// file of this machine's class and order of bytes is left to dlopen.
 Status overlap_foreign_elf_check(const char *path);
 
 #endif

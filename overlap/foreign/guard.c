@@ -2,26 +2,25 @@
 #include "overlap/foreign/guard.h"
 
 #include <pthread.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 #include "base/status.h"
 
-static atomic_int calls; // in progress
-static _Atomic pid_t caller;
-static char last[512]; // path of the library that was called last
+// Of this thread: the process and the library of the call in progress.
+static _Thread_local pid_t caller; // 0: none
+static _Thread_local const char *called;
 
-// Runs in exit(). A process that the library forked ends as it likes.
+// Runs in exit(), in the thread that called it. A process that the library forked ends as it likes.
 static void end_with_failure(void) {
-  if (atomic_load(&calls) == 0 || getpid() != atomic_load(&caller)) return;
+  if (getpid() != caller) return;
   fflush(NULL);
   fprintf(
       stderr,
       "error: %s: called exit() where the program waits for an answer: a model that fails returns a number "
       "other than 0 and a message (tetlap/model.h)\n",
-      last);
+      called);
   _exit(status_exit_code(STATUS_SOLVER));
 }
 
@@ -32,10 +31,9 @@ static void register_end(void) {
 void overlap_foreign_guard_begin(const char *path) {
   static pthread_once_t once = PTHREAD_ONCE_INIT;
   pthread_once(&once, register_end);
-  atomic_store(&caller, getpid());
-  if (atomic_fetch_add(&calls, 1) == 0) snprintf(last, sizeof last, "%s", path);
+  caller = getpid(), called = path;
 }
 
 void overlap_foreign_guard_end(void) {
-  atomic_fetch_sub(&calls, 1);
+  caller = 0;
 }

@@ -109,18 +109,21 @@ static Status open_model(Library *library) {
                      why[0] ? ": " : "", why);
 }
 
-// Whether a symbol that was found is a variable, which must not be called.
+static const char SYMBOL[] = "tetlap_model";
+
+// Whether what was found is a variable, which must not be called.
 static bool is_variable(const void *address) {
   Dl_info info;
   const ElfW(Sym) *symbol = NULL;
-  return dladdr1(address, &info, (void **)&symbol, RTLD_DL_SYMENT) && symbol &&
+  return dladdr1(address, &info, (void **)&symbol, RTLD_DL_SYMENT) && symbol && info.dli_sname &&
+         strcmp(info.dli_sname, SYMBOL) == 0 &&
          ELF64_ST_TYPE(symbol->st_info) == STT_OBJECT; // that of 32 bits is the same
 }
 
 static Status find_model(Library *library) {
   const TetlapModel *(*find)(void);
   TRY(load(library));
-  void *const found = dlsym(library->handle, "tetlap_model");
+  void *const found = dlsym(library->handle, SYMBOL);
   *(void **)&find = found;
   if (!find)
     return status_fail(

@@ -269,7 +269,7 @@ static Status greet(Process *process, OverlapForeignPort *port) {
   TRY(exchange(process, request, reply, text, sizeof text));
   if (reply[0]) return fail_told(process, STATUS_INPUT, text);
   process->is_known = true;
-  const char *range = strchr(text, '\n');
+  const char *range = strstr(text, "\nradius ");
   if (range && !(process->range = memory_copy(range + 1, strlen(range), 1)))
     return status_no_memory("a model's process");
   *port = (OverlapForeignPort){.self = process,

@@ -164,5 +164,6 @@ const OverlapWrapKind overlap_wrap_both = {
     .eval_slopes = eval_slopes,
     .eval_logits = eval_logits,
     .keeps_doubt = true,
+    .lacks_range = true,
     .centroid = OVERLAP_WRAP_MIXED_CENTROID,
 };

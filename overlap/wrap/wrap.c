@@ -130,7 +130,7 @@ static void fill(OverlapWrap *wrap) {
       .weights = inner->weights,
       .gives_doubt = kind->keeps_doubt && inner->gives_doubt,
       .gives_doubt_gradient = kind->keeps_doubt && inner->gives_doubt_gradient,
-      .range = kind->keeps_doubt ? inner->range : NULL,
+      .range = kind->keeps_doubt && !kind->lacks_range ? inner->range : NULL,
       .eval_logits = inner->eval_logits ? eval_logits : NULL,
       .eval_bounds = inner->eval_bounds ? eval_bounds : NULL,
       .eval_pull = kind->eval_pull && inner->eval_pull ? eval_pull : NULL,

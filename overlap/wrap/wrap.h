@@ -30,6 +30,7 @@ typedef struct OverlapWrapKind {
                         double *logits); // NULL: the inner model's
   bool answers_disjoint;                 // by exactly 0
   bool keeps_doubt;                      // the inner model's doubt and range are those of what comes out
+  bool lacks_range;                      // but not the range: another order's is asked as well
   bool (*has_gradient)(const OverlapModel *inner); // NULL: where the inner model has one
   bool lacks_hessian;
   enum {

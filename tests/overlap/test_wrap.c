@@ -217,7 +217,7 @@ START_TEST(hybrid_of_a_model_of_yours_is_differentiated_with_its_share) {
   static const char *const words[] = {"hybrid=" TETLAP_MODEL_18, "hybrid=" TETLAP_MODEL_19,
                                       "hybrid=both=" TETLAP_MODEL_18, "hybrid=keep=" TETLAP_MODEL_18};
   static double moved[PAIRS][SIZE];
-  const double h = 1e-6;
+  const double h = 2e-7;
   int blended = 0;
   ask(words[_i], pairs, GRADIENTS, false, &outer);
   for (int v = 0; v < SIZE; v++) {
