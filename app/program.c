@@ -16,6 +16,9 @@
 #include "base/status.h"
 #include "base/text.h"
 
+// mpiexec ends all ranks when the first one fails: those that are not heard give the other so long to speak.
+enum { PATIENCE_S = 2 };
+
 static const AppCommand *const commands[] = {
     &app_command_run,
     &app_command_resume,
@@ -111,7 +114,10 @@ int app_program_run(const AppCommand *root, int argument_count, char **arguments
   if (command) app_ranks_keep_line();
   Status status = command ? app_ranks_check(command) : STATUS_OK;
   if (status) {
-    if (app_ranks_is_heard()) log_error("%s", status_message());
+    if (app_ranks_is_heard())
+      log_error("%s", status_message());
+    else
+      sleep(PATIENCE_S);
     return status_exit_code(status);
   }
   return flush_output(app_cli_command_run(root, argument_count, arguments));
