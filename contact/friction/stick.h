@@ -24,8 +24,9 @@
 //             s ← s L(w)/(k_a |s|) with w of the cut itself. D is the law's, but no less than
 //             2 (μ_s − μ) N/k_a, so that the force falls no faster than the spring rises: it is one function
 //             of positions, without a jump. w ← 0 where the vertex sticks again
-//   accepted  S_a ← F_a⁻¹ s;   dissipated += mean of μN_a at the onset of slip and now · length cut off: the
-//             onset is where the way from S_a' to s_trial, and with it μN_a from then to now, meet last
+//   accepted  S_a ← F_a⁻¹ s;   dissipated += mean of μN_a at the onset of slip and now · length cut off. Both
+//             s from S_a' to s_trial and μN_a from then to now are taken as linear; the onset is where
+//             k_a |s| exceeds μN_a from there on
 //   slid      G_a ← F_a⁻¹ (F_a G_a + s_trial − s), the way of the slave against the other; lengths add up
 //
 // Δ is zero to rounding in any common rigid motion and telescopes; only increments are averaged. Force and
