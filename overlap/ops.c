@@ -36,6 +36,24 @@ void overlap_ops_write_nothing(const OverlapAnswer *answer) {
   if (answer->centroid) memset(answer->centroid, 0, 3 * sizeof(double));
 }
 
+bool overlap_ops_are_finite(size_t count, const double *numbers) {
+  double sum = 0; // x − x is 0 for finite x, else NaN
+  for (size_t i = 0; numbers && i < count; i++) sum += numbers[i] - numbers[i];
+  return sum == 0;
+}
+
+bool overlap_ops_is_possible(double volume, double smaller) {
+  static const double ROUNDING = 1e-9;
+  return volume >= 0 && volume <= smaller * (1 + ROUNDING);
+}
+
+Status overlap_ops_fail_impossible(const char *model, int pair, double volume, double smaller) {
+  return status_fail(STATUS_SOLVER,
+                     "overlap model '%s': pair %d: its volume is %g m³, expected 0 to that of the smaller "
+                     "tetrahedron, %g m³",
+                     model, pair, volume, smaller);
+}
+
 static OverlapOrigins part_of(const OverlapOrigins *origins, size_t begin) {
   if (!origins->elements) return *origins;
   return (OverlapOrigins){.elements = origins->elements + 2 * begin,

@@ -33,7 +33,7 @@ typedef enum OverlapFlag {
   OVERLAP_BLENDED = 1 << 4,  // answered partly by a more careful model
   OVERLAP_NET = 1 << 5,      // a TetrahedronPairNet's volume is part of the answer
   OVERLAP_BEYOND = 1 << 6,   // the pair is unlike those that the model was made for
-  OVERLAP_UNSOUND = 1 << 7,  // the model's V was negative, and became 0, or is above the smaller tetrahedron
+  OVERLAP_UNSOUND = 1 << 7,  // V was negative or not finite, and is 0, or is above the smaller tetrahedron
 } OverlapFlag;
 
 // Where the pairs of a scene are from; all NULL: not known.
@@ -141,6 +141,14 @@ typedef struct OverlapOps {
   // it itself.
   const struct OverlapTpnRange *range;
 } OverlapOps;
+
+// Whether all `numbers` are finite; of NULL true.
+bool overlap_ops_are_finite(size_t count, const double *numbers);
+
+// Whether two tetrahedra, the smaller one of this volume, may share V, but for rounding; false for NaN.
+bool overlap_ops_is_possible(double volume, double smaller);
+// STATUS_SOLVER, with the message of a model whose V of a pair is not.
+Status overlap_ops_fail_impossible(const char *model, int pair, double volume, double smaller);
 
 // A capability that a model has however it was made.
 bool overlap_ops_always(const void *self);

@@ -122,7 +122,7 @@ static inline int fold(Scene *scene) {
   move(scene);
   const ContactEvaluation *evaluation = evaluated_at(scene->system, 0, scene->blocks.x);
   for (int k = 0; k < evaluation->pair_count; k++)
-    folded += evaluation->fields[k].depths[0] < 0 || evaluation->fields[k].depths[1] < 0;
+    folded += evaluation->fields[k].signs[0] < 0 || evaluation->fields[k].signs[1] < 0;
   return folded;
 }
 
@@ -148,6 +148,17 @@ static inline double slope_along(const Scene *scene, const double *d, double h, 
     energy[k] = energy_at(scene, x);
   }
   return (8 * (energy[2] - energy[1]) - (energy[3] - energy[0])) / (12 * h);
+}
+
+// −∂f/∂x along d, by differences over ± h. Owned by the caller (free).
+static inline double *stiffness_along(const Scene *scene, const double *d, double h, double *x) {
+  step_to(scene, h, d, x);
+  double *above = forces_at(scene, x);
+  step_to(scene, -h, d, x);
+  double *below = forces_at(scene, x);
+  for (int i = 0; i < 3 * scene->blocks.vertex_count; i++) above[i] = (below[i] - above[i]) / (2 * h);
+  free(below);
+  return above;
 }
 
 #endif

@@ -83,12 +83,6 @@ static void tell_origins(Foreign *foreign, const OverlapOrigins *origins) {
   memcpy(request->bodies, origins->bodies, count * sizeof *origins->bodies);
 }
 
-static bool are_finite(size_t count, const double *numbers) {
-  double sum = 0; // x − x is 0 for finite x, else NaN
-  for (size_t i = 0; i < count; i++) sum += numbers[i] - numbers[i];
-  return sum == 0;
-}
-
 static Status fail_not_finite(const Foreign *foreign, int pair, const char *what) {
   return status_fail(STATUS_SOLVER, "overlap model '%s': pair %d: %s is not a finite number", foreign->name,
                      pair, what);
@@ -114,8 +108,9 @@ static Status give_doubt(const Foreign *foreign, const OverlapBatch *batch, size
   if (!isfinite(doubt)) return STATUS_OK;
   memcpy(gradient, foreign->request.arrays[OVERLAP_FOREIGN_DOUBT_GRADIENT] + SIZE * at,
          SIZE * sizeof *gradient);
-  return are_finite(SIZE, gradient) ? STATUS_OK
-                                    : fail_not_finite(foreign, number, "the gradient of its doubt");
+  return overlap_ops_are_finite(SIZE, gradient)
+             ? STATUS_OK
+             : fail_not_finite(foreign, number, "the gradient of its doubt");
 }
 
 // Whether the pair is within the range that the model declares.
@@ -134,9 +129,11 @@ static const char *find_not_finite(const Foreign *foreign, const OverlapBatch *b
   const double volume = arrays[OVERLAP_FOREIGN_VOLUME][at];
   if (!isfinite(volume)) return "its volume";
   if (!(volume > 0)) return NULL;
-  if (batch->gradient && !are_finite(24, arrays[OVERLAP_FOREIGN_GRADIENT] + 24 * at))
+  if (batch->gradient && !overlap_ops_are_finite(24, arrays[OVERLAP_FOREIGN_GRADIENT] + 24 * at))
     return "a gradient of it";
-  return batch->centroid && !are_finite(3, arrays[OVERLAP_FOREIGN_CENTROID] + 3 * at) ? "its centroid" : NULL;
+  return batch->centroid && !overlap_ops_are_finite(3, arrays[OVERLAP_FOREIGN_CENTROID] + 3 * at)
+             ? "its centroid"
+             : NULL;
 }
 
 // A pair whose answer has something that is not finite.
@@ -154,10 +151,7 @@ static Status give_not_finite(const Foreign *foreign, const OverlapBatch *batch,
 
 static Status give_unsound(const Foreign *foreign, double volume, double smaller, int i, unsigned *flags) {
   if (foreign->unsound == OVERLAP_UNSOUND_FATAL)
-    return status_fail(STATUS_SOLVER,
-                       "overlap model '%s': pair %d: its volume is %g m³, expected 0 to that of the smaller "
-                       "tetrahedron, %g m³",
-                       foreign->name, i, volume, smaller);
+    return overlap_ops_fail_impossible(foreign->name, i, volume, smaller);
   *flags |= OVERLAP_UNSOUND;
   return STATUS_OK;
 }
@@ -176,7 +170,7 @@ static Status give(const Foreign *foreign, const OverlapBatch *batch, size_t at)
   if (volume == 0 && asks_for_all(foreign)) *answer.flags = smaller > 0 ? OVERLAP_DISJOINT : OVERLAP_FLAT;
   if (!(*answer.flags) && !is_within(foreign, batch->pairs + OVERLAP_PAIR_SIZE * at, volume))
     *answer.flags = OVERLAP_BEYOND;
-  if (volume < 0 || volume > smaller * (1 + 1e-9))
+  if (!overlap_ops_is_possible(volume, smaller))
     TRY(give_unsound(foreign, volume, smaller, number_of(batch, at), answer.flags));
   if (!(volume > 0)) {
     overlap_ops_write_nothing(&answer);
@@ -204,7 +198,7 @@ static Status eval_hessian(Foreign *foreign, const OverlapBatch *batch) {
     for (size_t k = 0; k < request->count; k++) {
       const double *row = request->arrays[OVERLAP_FOREIGN_SLOPE] + SIZE * k;
       if (!(batch->volume[k] > 0)) continue;
-      if (are_finite(SIZE, row))
+      if (overlap_ops_are_finite(SIZE, row))
         memcpy(batch->hessian + SIZE * SIZE * k + SIZE * r, row, SIZE * sizeof *row);
       else
         TRY(give_not_finite(foreign, batch, k, "a second derivative of it"));
@@ -292,7 +286,7 @@ static Status pull(Foreign *foreign, const OverlapPull *asked) {
   if (asked->by_gradient) memcpy(arrays[OVERLAP_FOREIGN_BY_GRADIENT], asked->by_gradient, SIZE * bytes);
   TRY(overlap_foreign_request_pull(request, &foreign->port, foreign->name, wanted));
   for (size_t k = 0; k < count; k++)
-    if (!are_finite(SIZE, arrays[OVERLAP_FOREIGN_SLOPE] + SIZE * k))
+    if (!overlap_ops_are_finite(SIZE, arrays[OVERLAP_FOREIGN_SLOPE] + SIZE * k))
       return fail_not_finite(foreign, asked->numbers ? asked->numbers[k] : (int)k, "its pull-back");
   memcpy(asked->slope, arrays[OVERLAP_FOREIGN_SLOPE], SIZE * bytes);
   return STATUS_OK;

@@ -9,19 +9,11 @@
 
 enum { SIZE = OVERLAP_PAIR_SIZE, ROWS = 3 * SIZE };
 
-// A finite sum of differences: each is 0 for a finite number, else NaN.
-static bool are_finite(size_t count, const double *numbers) {
-  double sum = 0;
-  for (size_t i = 0; numbers && i < count; i++) sum += numbers[i] - numbers[i];
-  return sum == 0;
-}
-
 static bool is_finite(const OverlapAnswer *answer) {
-  return are_finite(1, answer->volume) && are_finite(SIZE, answer->gradient) &&
-         are_finite((size_t)SIZE * SIZE, answer->hessian) && are_finite(3, answer->centroid);
+  return overlap_ops_are_finite(1, answer->volume) && overlap_ops_are_finite(SIZE, answer->gradient) &&
+         overlap_ops_are_finite((size_t)SIZE * SIZE, answer->hessian) &&
+         overlap_ops_are_finite(3, answer->centroid);
 }
-
-static const double ROUNDING = 1e-9; // of the smaller tetrahedron's volume
 
 static Status check_pair(const OverlapWrap *wrap, const OverlapBatch *batch, int i) {
   unsigned unused;
@@ -32,11 +24,9 @@ static Status check_pair(const OverlapWrap *wrap, const OverlapBatch *batch, int
     return status_fail(STATUS_SOLVER,
                        "overlap model '%s': pair %d: its answer is not finite, its volume %g m³", wrap->name,
                        number, volume);
-  if (volume >= 0 && volume <= smaller * (1 + ROUNDING)) return STATUS_OK;
-  return status_fail(STATUS_SOLVER,
-                     "overlap model '%s': pair %d: its volume is %g m³, expected 0 to that of the smaller "
-                     "tetrahedron, %g m³",
-                     wrap->name, number, volume, smaller);
+  return overlap_ops_is_possible(volume, smaller)
+             ? STATUS_OK
+             : overlap_ops_fail_impossible(wrap->name, number, volume, smaller);
 }
 
 static Status eval_strict(OverlapWrap *wrap, const OverlapBatch *batch) {
@@ -51,9 +41,8 @@ static Status eval_lenient(OverlapWrap *wrap, const OverlapBatch *batch) {
     unsigned unused = 0;
     const OverlapAnswer answer = overlap_ops_answer(batch, i, &unused);
     const bool is_told = is_finite(&answer);
-    if (is_told && *answer.volume >= 0 &&
-        *answer.volume <= overlap_sizes_smaller(batch->pairs + SIZE * (ptrdiff_t)i) * (1 + ROUNDING))
-      continue;
+    const double smaller = overlap_sizes_smaller(batch->pairs + SIZE * (ptrdiff_t)i);
+    if (is_told && overlap_ops_is_possible(*answer.volume, smaller)) continue;
     if (!is_told || *answer.volume < 0) overlap_ops_write_nothing(&answer);
     *answer.flags |= OVERLAP_UNSOUND;
   }

@@ -39,6 +39,7 @@ typedef struct OverlapWrapKind {
     OVERLAP_WRAP_OWN_CENTROID,   // always its own
     OVERLAP_WRAP_NO_CENTROID,    // from V and ∇V
   } centroid;
+  const struct OverlapWrapMixture *mixture; // of those whose operations are mixture/mixture.h's; else NULL
 } OverlapWrapKind;
 
 struct OverlapWrap {

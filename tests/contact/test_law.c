@@ -190,10 +190,7 @@ START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
     double *x = blocks_copy(&scene.blocks), h = 1e-6, worst = 0;
     for (uint64_t k = 0; k < 5; k++) {
       double *d = random_motion(&scene, k, false);
-      step_to(&scene, h, d, x);
-      double *above = forces_at(&scene, x);
-      step_to(&scene, -h, d, x);
-      double *below = forces_at(&scene, x);
+      double *expected = stiffness_along(&scene, d, h, x);
       Product product = product_of(d, scene.blocks.vertex_count);
       ContactStiffnessSink sink = product_sink(&product);
       ck_assert_ok(
@@ -202,11 +199,10 @@ START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
       for (int i = 0; i < n; i++) {
         int body = i / 3 < scene.blocks.bodies[0].vertex_end ? 0 : 1;
         if (scene.blocks.bodies[body].is_obstacle) continue;
-        double difference = (above[i] - below[i]) / (2 * h) + product.y[i];
-        square += difference * difference;
+        square += (product.y[i] - expected[i]) * (product.y[i] - expected[i]);
       }
       worst = suite_larger(worst, sqrt(square) / size);
-      free(d), free(above), free(below), free(product.y);
+      free(d), free(expected), free(product.y);
     }
     ck_assert_double_le(worst, stiffness_error(kind, _i));
     free(x), destroy(&scene);
@@ -214,8 +210,16 @@ START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
 }
 END_TEST
 
-// A Taylor series of the energy along a motion, with force and stiffness: what is left is of third order.
-// −∂f/∂x of a scene that lies this far from the origin, along a direction. Owned by the caller (free).
+// −∂f/∂x along d, by the matrix that is not symmetric. Owned by the caller (free).
+static double *turned_along(Scene *scene, const double *d) {
+  Product product = product_of(d, scene->blocks.vertex_count);
+  ContactStiffnessSink sink = product_sink(&product);
+  ck_assert_ok(contact_system_turn(scene->system, evaluated_at(scene->system, 0, scene->blocks.x),
+                                   CONTACT_ALL_INTERFACES, &sink));
+  return product.y;
+}
+
+// The same of a scene that lies this far from the origin, along a random direction.
 static double *turned_at(const ContactLaw *law, int kind, double far, int *count) {
   static const double GRID = 0x1p-32; // positions are multiples of it here and there
   Scene scene;
@@ -228,14 +232,10 @@ static double *turned_at(const ContactLaw *law, int kind, double far, int *count
   for (int c = 0; c < 3; c++) scene.shape.point[c] = far + GRID * round(scene.shape.point[c] / GRID);
   scene.law = law;
   start(&scene, "clip");
-  double *d = random_motion(&scene, 1, false);
-  Product product = product_of(d, scene.blocks.vertex_count);
-  ContactStiffnessSink sink = product_sink(&product);
-  ck_assert_ok(contact_system_turn(scene.system, evaluated_at(scene.system, 0, scene.blocks.x),
-                                   CONTACT_ALL_INTERFACES, &sink));
+  double *d = random_motion(&scene, 1, false), *turned = turned_along(&scene, d);
   *count = 3 * scene.blocks.vertex_count;
   free(d), destroy(&scene);
-  return product.y;
+  return turned;
 }
 
 // Differences of forces are divided by how far coordinates went, which is rounded to 1e-5 of a step so far
@@ -264,25 +264,16 @@ START_TEST(the_matrix_of_a_law_is_what_differences_say_where_a_body_is_folded) {
   start(&scene, "clip");
   ck_assert_int_gt(fold(&scene), 10);
   int n = 3 * scene.blocks.vertex_count;
-  double *x = blocks_copy(&scene.blocks), *d = random_motion(&scene, 1, false), h = 1e-6, square = 0;
-  Product product = product_of(d, scene.blocks.vertex_count);
-  ContactStiffnessSink sink = product_sink(&product);
-  ck_assert_ok(contact_system_turn(scene.system, evaluated_at(scene.system, 0, scene.blocks.x),
-                                   CONTACT_ALL_INTERFACES, &sink));
-  step_to(&scene, h, d, x);
-  double *above = forces_at(&scene, x);
-  step_to(&scene, -h, d, x);
-  double *below = forces_at(&scene, x);
-  for (int i = 0; i < n; i++) {
-    double difference = (above[i] - below[i]) / (2 * h) + product.y[i];
-    square += difference * difference;
-  }
+  double *x = blocks_copy(&scene.blocks), *d = random_motion(&scene, 1, false), square = 0;
+  double *turned = turned_along(&scene, d), *expected = stiffness_along(&scene, d, 1e-6, x);
+  for (int i = 0; i < n; i++) square += (turned[i] - expected[i]) * (turned[i] - expected[i]);
   // Differences by steps of a pair's depth, which is small in some.
-  ck_assert_double_le(sqrt(square / product_dot(product.y, product.y, n)), 1e-5);
-  free(x), free(d), free(above), free(below), free(product.y), destroy(&scene);
+  ck_assert_double_le(sqrt(square / product_dot(turned, turned, n)), 1e-5);
+  free(x), free(d), free(turned), free(expected), destroy(&scene);
 }
 END_TEST
 
+// Of the energy along a motion, with force and stiffness: what is left is of third order.
 START_TEST(energy_force_and_stiffness_are_a_taylor_series) {
   int kind = _i ? ON_PLANE : ON_BODY;
   Expression formula;

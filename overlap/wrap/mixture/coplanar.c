@@ -27,18 +27,11 @@ static Status share(const OverlapWrap *wrap, const OverlapBatch *portion, int or
 
 static const OverlapWrapMixture mixture = {.has_clip = true, .share = share};
 
-static Status eval(OverlapWrap *wrap, const OverlapBatch *batch) {
-  return overlap_wrap_mixture_eval(wrap, &mixture, batch);
-}
-
-static Status eval_slopes(const OverlapWrap *wrap, int count, const double *pairs, double *slopes) {
-  return overlap_wrap_mixture_slopes(wrap, &mixture, count, pairs, slopes);
-}
-
 const OverlapWrapKind overlap_wrap_coplanar = {
     .name = "coplanar",
     .help = "clip has a part in pairs with nearly coplanar faces",
-    .eval = eval,
-    .eval_slopes = eval_slopes,
+    .eval = overlap_wrap_mixture_eval,
+    .eval_slopes = overlap_wrap_mixture_slopes,
     .centroid = OVERLAP_WRAP_MIXED_CENTROID,
+    .mixture = &mixture,
 };

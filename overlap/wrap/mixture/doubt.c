@@ -67,10 +67,6 @@ static Status share(const OverlapWrap *wrap, const OverlapBatch *portion, int or
 
 static const OverlapWrapMixture mixture = {.has_clip = true, .share = share, .by_doubt = true};
 
-static Status eval(OverlapWrap *wrap, const OverlapBatch *batch) {
-  return overlap_wrap_mixture_eval(wrap, &mixture, batch);
-}
-
 const OverlapWrapKind overlap_wrap_doubt = {
     .name = "hybrid",
     .help = "clip where the model doubts, and beyond its range",
@@ -79,8 +75,9 @@ const OverlapWrapKind overlap_wrap_doubt = {
     .most = INFINITY,
     .usual = 0.005,
     .check = check,
-    .eval = eval,
+    .eval = overlap_wrap_mixture_eval,
     .has_gradient = has_gradient,
     .lacks_hessian = true,
     .centroid = OVERLAP_WRAP_MIXED_CENTROID,
+    .mixture = &mixture,
 };

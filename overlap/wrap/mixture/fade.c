@@ -63,14 +63,6 @@ static Status share(const OverlapWrap *wrap, const OverlapBatch *portion, int or
 
 static const OverlapWrapMixture mixture = {.share = share};
 
-static Status eval(OverlapWrap *wrap, const OverlapBatch *batch) {
-  return overlap_wrap_mixture_eval(wrap, &mixture, batch);
-}
-
-static Status eval_slopes(const OverlapWrap *wrap, int count, const double *pairs, double *slopes) {
-  return overlap_wrap_mixture_slopes(wrap, &mixture, count, pairs, slopes);
-}
-
 const OverlapWrapKind overlap_wrap_fade = {
     .name = "fade",
     .help = "V is faded in over the first overlap, and 0 of disjoint pairs",
@@ -78,8 +70,9 @@ const OverlapWrapKind overlap_wrap_fade = {
     .least = 0,
     .most = 1,
     .usual = TOUCH,
-    .eval = eval,
-    .eval_slopes = eval_slopes,
+    .eval = overlap_wrap_mixture_eval,
+    .eval_slopes = overlap_wrap_mixture_slopes,
     .answers_disjoint = true,
     .centroid = OVERLAP_WRAP_MIXED_CENTROID,
+    .mixture = &mixture,
 };

@@ -15,11 +15,6 @@ enum {
   PORTION = OVERLAP_WRAP_MIXTURE_PORTION
 };
 
-typedef struct Mixing {
-  const OverlapWrap *wrap;
-  const OverlapWrapMixture *mixture;
-} Mixing;
-
 // The other answer to those pairs of a portion that have a share in it.
 typedef struct Other {
   int count, at[PORTION];
@@ -82,25 +77,21 @@ static void mix(const OverlapBatch *portion, const OverlapWrapShares *shares, co
 }
 
 static Status mix_portion(const void *self, const OverlapBatch *portion, int first) {
-  const Mixing *mixing = self;
+  const OverlapWrap *wrap = self;
+  const OverlapWrapMixture *mixture = wrap->kind->mixture;
   OverlapWrapShares shares;
   Other other;
   (void)first;
-  TRY(mixing->mixture->share(mixing->wrap, portion,
-                             portion->hessian    ? 2
-                             : portion->gradient ? 1
-                                                 : 0,
-                             &shares));
-  TRY(ask_other(mixing->mixture, portion, &shares, &other));
-  for (int k = 0; k < other.count; k++) mix(portion, &shares, &other, k, mixing->mixture->has_clip);
+  TRY(mixture->share(wrap, portion, portion->hessian ? 2 : portion->gradient ? 1 : 0, &shares));
+  TRY(ask_other(mixture, portion, &shares, &other));
+  for (int k = 0; k < other.count; k++) mix(portion, &shares, &other, k, mixture->has_clip);
   return STATUS_OK;
 }
 
-Status overlap_wrap_mixture_eval(OverlapWrap *wrap, const OverlapWrapMixture *mixture,
-                                 const OverlapBatch *batch) {
+Status overlap_wrap_mixture_eval(OverlapWrap *wrap, const OverlapBatch *batch) {
   const size_t n = (size_t)batch->pair_count;
   const bool needs_gradient = batch->hessian && !batch->gradient;
-  const bool needs_doubt = mixture->by_doubt && wrap->inner.ops->gives_doubt;
+  const bool needs_doubt = wrap->kind->mixture->by_doubt && wrap->inner.ops->gives_doubt;
   const bool needs_slope = needs_doubt && (batch->gradient || needs_gradient);
   const size_t gradients = (needs_gradient ? SIZE * n : 0), slopes = (needs_slope ? SIZE * n : 0);
   TRY(overlap_wrap_reserve(wrap, gradients + slopes + (needs_doubt ? n : 0), 0));
@@ -109,10 +100,10 @@ Status overlap_wrap_mixture_eval(OverlapWrap *wrap, const OverlapWrapMixture *mi
   if (needs_slope) asked.doubt_gradient = wrap->room + gradients;
   if (needs_doubt) asked.doubt = wrap->room + gradients + slopes;
   TRY(overlap_model_eval(&wrap->inner, &asked));
-  return overlap_portions_eval(&asked, PORTION, true, mix_portion, &(Mixing){wrap, mixture});
+  return overlap_portions_eval(&asked, PORTION, true, mix_portion, wrap);
 }
 
-static Status mix_slopes(const Mixing *mixing, const double *pair, double *slopes) {
+static Status mix_slopes(const OverlapWrap *wrap, const double *pair, double *slopes) {
   OverlapBlend own, other = {0};
   OverlapWrapShares shares;
   OverlapBatch asked = {.pair_count = 1,
@@ -120,20 +111,18 @@ static Status mix_slopes(const Mixing *mixing, const double *pair, double *slope
                         .volume = &own.volume,
                         .gradient = own.gradient,
                         .centroid = own.centroid};
-  TRY(overlap_slopes_eval(&mixing->wrap->inner, &asked, own.slopes));
-  TRY(mixing->mixture->share(mixing->wrap, &asked, 1, &shares));
+  TRY(overlap_slopes_eval(&wrap->inner, &asked, own.slopes));
+  TRY(wrap->kind->mixture->share(wrap, &asked, 1, &shares));
   if (shares.value[0] > 0) {
-    if (mixing->mixture->has_clip) TRY(overlap_blend_clip(pair, &other));
+    if (wrap->kind->mixture->has_clip) TRY(overlap_blend_clip(pair, &other));
     overlap_blend_mix(shares.value[0], shares.gradient[0], &other, &own);
   }
   memcpy(slopes, own.slopes, sizeof own.slopes);
   return STATUS_OK;
 }
 
-Status overlap_wrap_mixture_slopes(const OverlapWrap *wrap, const OverlapWrapMixture *mixture, int count,
-                                   const double *pairs, double *slopes) {
-  const Mixing mixing = {wrap, mixture};
+Status overlap_wrap_mixture_slopes(const OverlapWrap *wrap, int count, const double *pairs, double *slopes) {
   for (int i = 0; i < count; i++)
-    TRY(mix_slopes(&mixing, pairs + SIZE * (ptrdiff_t)i, slopes + ROWS * (ptrdiff_t)i));
+    TRY(mix_slopes(wrap, pairs + SIZE * (ptrdiff_t)i, slopes + ROWS * (ptrdiff_t)i));
   return STATUS_OK;
 }

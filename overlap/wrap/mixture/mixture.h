@@ -23,10 +23,8 @@ typedef struct OverlapWrapMixture {
   bool by_doubt;
 } OverlapWrapMixture;
 
-// What a kind's operations do.
-Status overlap_wrap_mixture_eval(OverlapWrap *wrap, const OverlapWrapMixture *mixture,
-                                 const OverlapBatch *batch);
-Status overlap_wrap_mixture_slopes(const OverlapWrap *wrap, const OverlapWrapMixture *mixture, int count,
-                                   const double *pairs, double *slopes);
+// Operations of a kind that has a `mixture`.
+Status overlap_wrap_mixture_eval(OverlapWrap *wrap, const OverlapBatch *batch);
+Status overlap_wrap_mixture_slopes(const OverlapWrap *wrap, int count, const double *pairs, double *slopes);
 
 #endif

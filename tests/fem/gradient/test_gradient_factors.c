@@ -128,14 +128,16 @@ START_TEST(goals_share_a_factor_which_serves_many_steps) {
 }
 END_TEST
 
-// Vertices come a little way in a step.
+// Vertices come a little way in a step of a motion.
 START_TEST(what_may_meet_is_looked_for_where_bodies_have_moved) {
   const Asked asked = asked_of(_i);
   FemReplaySteps steps;
   Answer answer;
   find_steps(&asked, &steps);
   differentiate(&asked, false, &steps, &answer);
-  if (_i != RUB) ck_assert_int_lt(2 * (couplings - count_factors(&steps)), steps.count);
+  int looked = couplings - count_factors(&steps); // each factor looks, too
+  ck_assert_int_gt(looked, 0);
+  ck_assert_int_lt(2 * looked, steps.count);
   destroy(&answer);
   fem_replay_steps_destroy(&steps);
 }
@@ -215,7 +217,7 @@ END_TEST
 int main(void) {
   TCase *test_case = tcase_create("gradient_factors");
   tcase_add_loop_test(test_case, goals_share_a_factor_which_serves_many_steps, 0, SCENE_COUNT);
-  tcase_add_loop_test(test_case, what_may_meet_is_looked_for_where_bodies_have_moved, 0, SCENE_COUNT);
+  tcase_add_loop_test(test_case, what_may_meet_is_looked_for_where_bodies_have_moved, 0, RUB);
   tcase_add_test(test_case, nothing_is_laid_out_ahead_beyond_what_was_searched);
   tcase_add_loop_test(test_case, the_residual_that_is_told_is_that_of_the_worst_system, 0, SCENE_COUNT);
   tcase_add_loop_test(test_case, an_earlier_factor_that_does_not_serve_is_made_anew, 0, SCENE_COUNT);

@@ -124,7 +124,7 @@ START_TEST(lines_that_cannot_be_are_refused_with_their_place) {
   static const struct {
     const char *lines, *message;
   } cases[] = {
-      {"[{name: far, from: [5, 5, 5], to: [6, 6, 6]}]", "that reaches from ("},
+      {"[{name: far, from: [5, 5, 5], to: [6, 6, 6]}]", "line 'far': none of its 51 points is in the body"},
       {"[{name: dot, from: [0, 0, 0], to: [0, 0, 0]}]", "line 'dot': from and to are 0 m apart"},
       {"[{name: long, from: [1e300, 0, 0], to: [-1e300, 0, 0]}]", "line 'long': from and to are inf m apart"},
       {"[{name: a, from: [0, 0, 0], to: [0.1, 0, 0]}, {name: a, from: [0, 0, 0], to: [0, 0.1, 0]}]",
