@@ -139,7 +139,7 @@ typedef struct OverlapOps {
   bool gives_doubt, gives_doubt_gradient;
   // The pairs that it was made for, in measures of the pairs as they stand; NULL: it does not say, or sees to
   // it itself.
-  const struct OverlapTpnRange *range;
+  const struct OverlapRange *range;
 } OverlapOps;
 
 // Whether all `numbers` are finite; of NULL true.

@@ -23,7 +23,7 @@ typedef enum OverlapOrders {
   OVERLAP_ORDERS_BOTH, // the mean of V(A, B) and V(B, A)
 } OverlapOrders;
 
-// Pairs unlike those of the training (tpn/range.h).
+// Pairs unlike those of the training (pair/range.h).
 typedef enum OverlapBeyond {
   OVERLAP_BEYOND_AUTO,
   OVERLAP_BEYOND_COUNT, // are counted

@@ -14,8 +14,8 @@
 #include "app/training/start.h"
 #include "app/training/task.h"
 #include "base/memory.h"
+#include "overlap/pair/range.h"
 #include "overlap/tpn/network.h"
-#include "overlap/tpn/range.h"
 
 enum { SIZE = 24, HALF = SIZE / 2, BLOCK = 16384, MAX_SETS = 6, MEASURED = 1 << 18 };
 
@@ -37,7 +37,7 @@ typedef struct Tpn {
   Samples sets[MAX_SETS];
   int set_count;
   AppTrainingOrder order;
-  OverlapTpnRange range;          // of the training's pairs
+  OverlapRange range;             // of the training's pairs
   NetWork_f32 work;               // of validation
   int *samples;                   // (batch)
   float *x, *y, *gy;              // (batch, width), (batch, 2), (batch, 2)
@@ -217,8 +217,8 @@ static Status create_tangents(Tpn *tpn, const AppTrainingConfig *config) {
 }
 
 static void measure_range(const Samples *samples, const AppTrainingConfig *config, int count,
-                          OverlapTpnMeasures *measures, double *overlaps, double *values,
-                          OverlapTpnRange *range) {
+                          OverlapRangeMeasures *measures, double *overlaps, double *values,
+                          OverlapRange *range) {
   double pair[SIZE], output_scale = config->model.output_scale;
   if (samples->width == HALF)
     memcpy(pair, overlap_tpn_normalise_first(normalisation_of(config)), HALF * sizeof *pair);
@@ -226,15 +226,15 @@ static void measure_range(const Samples *samples, const AppTrainingConfig *confi
     ptrdiff_t at = (ptrdiff_t)i * samples->count / count; // evenly from all of them
     for (int c = 0; c < samples->width; c++)
       pair[SIZE - samples->width + c] = (double)samples->x[at * samples->width + c];
-    measures[i] = overlap_tpn_range_measure(pair);
+    measures[i] = overlap_range_measure(pair);
     overlaps[i] = (double)samples->target[at] / (output_scale * (double)samples->factor[at]);
   }
-  *range = overlap_tpn_range_of(count, measures, overlaps, values);
+  *range = overlap_range_of(count, measures, overlaps, values);
 }
 
-static Status find_range(const Samples *samples, const AppTrainingConfig *config, OverlapTpnRange *range) {
+static Status find_range(const Samples *samples, const AppTrainingConfig *config, OverlapRange *range) {
   int count = samples->count < MEASURED ? samples->count : MEASURED;
-  OverlapTpnMeasures *measures = memory_zeroed((size_t)count, sizeof *measures);
+  OverlapRangeMeasures *measures = memory_zeroed((size_t)count, sizeof *measures);
   double *overlaps = memory_zeroed((size_t)count, sizeof *overlaps);
   double *values = memory_zeroed((size_t)count, sizeof *values);
   bool fits = measures && overlaps && values;
@@ -243,7 +243,7 @@ static Status find_range(const Samples *samples, const AppTrainingConfig *config
   return fits ? STATUS_OK : status_no_memory("the range of the training's pairs");
 }
 
-Status app_training_tpn_range(const AppTrainingConfig *config, OverlapTpnRange *range) {
+Status app_training_tpn_range(const AppTrainingConfig *config, OverlapRange *range) {
   Samples samples = {0};
   Status status = load(&samples, config, config->training, config->training_count);
   if (!status && samples.count == 0) status = status_fail(STATUS_INPUT, "there is no pair to train on");
@@ -426,8 +426,8 @@ static Status start(AppTrainingTask *task, NetModel_f32 *model) {
 static Status write(const AppTrainingTask *task, const NetModel_f32 *model, const char *provenance,
                     const char *path) {
   const Tpn *tpn = task->self;
-  char range[OVERLAP_TPN_RANGE_TEXT], normalisation[OVERLAP_TPN_NORMALISATION_TEXT], *story;
-  overlap_tpn_range_print(&tpn->range, range);
+  char range[OVERLAP_RANGE_TEXT], normalisation[OVERLAP_TPN_NORMALISATION_TEXT], *story;
+  overlap_range_print(&tpn->range, range);
   print_normalisation(task, normalisation);
   story = memory_copy(provenance, strlen(provenance) + 1, 1);
   if (!story) return status_no_memory("the weights' provenance");

@@ -4,9 +4,9 @@
 #define TETLAP_APP_TRAINING_TPN_H
 
 #include "app/training/config.h"
-#include "overlap/tpn/range.h"
+#include "overlap/pair/range.h"
 
 // The range of a configuration's training pairs: makes or reads all of them.
-Status app_training_tpn_range(const AppTrainingConfig *config, OverlapTpnRange *range);
+Status app_training_tpn_range(const AppTrainingConfig *config, OverlapRange *range);
 
 #endif

@@ -10,17 +10,17 @@
 #include "overlap/foreign/library.h"
 #include "overlap/foreign/process.h"
 #include "overlap/foreign/request.h"
+#include "overlap/pair/range.h"
 #include "overlap/pair/sizes.h"
 #include "overlap/source.h"
-#include "overlap/tpn/range.h"
 
 typedef struct Foreign {
   OverlapOps ops;
   char name[128];
   OverlapUnsound unsound;
   OverlapForeignPort port;
-  OverlapTpnRange range; // where `ops` says so
-  pthread_mutex_t lock;  // of the request, and of the port
+  OverlapRange range;   // where `ops` says so
+  pthread_mutex_t lock; // of the request, and of the port
   OverlapForeignRequest request;
 } Foreign;
 
@@ -115,8 +115,8 @@ static Status give_doubt(const Foreign *foreign, const OverlapBatch *batch, size
 
 // Whether the pair is within the range that the model declares.
 static bool is_within(const Foreign *foreign, const double *pair, double volume) {
-  const OverlapTpnRange *range = foreign->ops.range;
-  return !range || (overlap_tpn_range_weight(range, pair, NULL, NULL) >= 1 && volume <= range->overlap);
+  const OverlapRange *range = foreign->ops.range;
+  return !range || (overlap_range_weight(range, pair, NULL, NULL) >= 1 && volume <= range->overlap);
 }
 
 static int number_of(const OverlapBatch *batch, size_t at) {
@@ -335,7 +335,7 @@ static Status open_port(OverlapForeignPort *port, const char *word) {
 static Status read_range(Foreign *foreign) {
   const char *text = foreign->port.range;
   if (!text) return STATUS_OK;
-  if (!overlap_tpn_range_parse(text, &foreign->range))
+  if (!overlap_range_parse(text, &foreign->range))
     return status_fail(
         STATUS_INPUT,
         "%s: its range is '%.200s', expected 'radius A to B, first volume A to B, second volume A "

@@ -7,7 +7,7 @@
 
 #include "overlap/ops.h"
 #include "overlap/pair/invariant.h"
-#include "overlap/tpn/simplex.h"
+#include "overlap/pair/simplex.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE, HALF = SIZE / 2, FACTORS = 3 };
 
@@ -63,7 +63,7 @@ static void find_changes(const OverlapHybridSigns *signs, double changes[FACTORS
   memset(changes, 0, FACTORS * sizeof *changes);
   for (int t = 0; t < 2; t++) {
     double lambda[HALF];
-    overlap_tpn_simplex_volume(signs->pair + HALF * t, lambda);
+    overlap_simplex_volume(signs->pair + HALF * t, lambda);
     for (int i = 0; i < HALF; i++) changes[1 + t][HALF * t + i] = -lambda[i];
   }
   for (int i = 0; i < SIZE; i++) {
@@ -84,8 +84,8 @@ static void bend_logs(const OverlapHybridSigns *signs, const Step steps[FACTORS]
   for (int t = 0; t < 2; t++) {
     double lambda[HALF];
     if (factors[1 + t] == 0) continue;
-    overlap_tpn_simplex_volume(signs->pair + HALF * t, lambda);
-    overlap_tpn_simplex_add_outer(lambda, 0, factors[1 + t], SIZE, hessian + (SIZE + 1) * HALF * t);
+    overlap_simplex_volume(signs->pair + HALF * t, lambda);
+    overlap_simplex_add_outer(lambda, 0, factors[1 + t], SIZE, hessian + (SIZE + 1) * HALF * t);
   }
 }
 

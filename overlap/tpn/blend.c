@@ -10,42 +10,42 @@ static const double SOFTEST = 1e-3 / 6;
 // The width of the bands in which a volume is bent to stay below the smaller tetrahedron's.
 static const double BAND = 0.05;
 
-static OverlapTpnBend itself(double x) {
-  return (OverlapTpnBend){.value = x, .slope = 1};
+static OverlapBend itself(double x) {
+  return (OverlapBend){.value = x, .slope = 1};
 }
 
 // max(0, v)/scale, with a parabola in place of the corner where that is asked for.
-static OverlapTpnBend clamp(const OverlapTpnRule *rule, double v) {
+static OverlapBend clamp(const OverlapTpnRule *rule, double v) {
   double soft = SOFTEST * rule->scale;
   if (rule->rounds && fabs(v) < soft)
-    return (OverlapTpnBend){(v + soft) * (v + soft) / (4 * soft) / rule->scale,
-                            (v + soft) / (2 * soft) / rule->scale, 1 / (2 * soft) / rule->scale};
-  return v > 0 ? (OverlapTpnBend){.value = v / rule->scale, .slope = 1 / rule->scale}
-               : (OverlapTpnBend){.value = 0};
+    return (OverlapBend){(v + soft) * (v + soft) / (4 * soft) / rule->scale,
+                         (v + soft) / (2 * soft) / rule->scale, 1 / (2 * soft) / rule->scale};
+  return v > 0 ? (OverlapBend){.value = v / rule->scale, .slope = 1 / rule->scale}
+               : (OverlapBend){.value = 0};
 }
 
-static OverlapTpnBend inverse(double x) {
-  return (OverlapTpnBend){1 / x, -1 / (x * x), 2 / (x * x * x)};
+static OverlapBend inverse(double x) {
+  return (OverlapBend){1 / x, -1 / (x * x), 2 / (x * x * x)};
 }
 
 // k: what a parabola in place of the corner of |d|, at d = 0, is above it.
-static OverlapTpnBend rounding(double d) {
+static OverlapBend rounding(double d) {
   double sign = d > 0 ? 1 : -1, left = BAND - fabs(d);
-  if (left <= 0) return (OverlapTpnBend){.value = 0};
-  return (OverlapTpnBend){left * left / (2 * BAND), -sign * left / BAND, 1 / BAND};
+  if (left <= 0) return (OverlapBend){.value = 0};
+  return (OverlapBend){left * left / (2 * BAND), -sign * left / BAND, 1 / BAND};
 }
 
 // c: min(y, 1) with a parabola in place of the corner, below it; 1 less what rounding may add later.
-static OverlapTpnBend bound(double y) {
+static OverlapBend bound(double y) {
   double left = 1 + BAND - y;
   if (y <= 1 - BAND) return itself(y);
-  if (!(left > 0)) return (OverlapTpnBend){.value = 1 - 4 * DBL_EPSILON};
-  return (OverlapTpnBend){1 - left * left / (4 * BAND) - 4 * DBL_EPSILON, left / (2 * BAND), -1 / (2 * BAND)};
+  if (!(left > 0)) return (OverlapBend){.value = 1 - 4 * DBL_EPSILON};
+  return (OverlapBend){1 - left * left / (4 * BAND) - 4 * DBL_EPSILON, left / (2 * BAND), -1 / (2 * BAND)};
 }
 
-static OverlapTpnBend probability(double z) {
+static OverlapBend probability(double z) {
   double p = 1 / (1 + exp(-z));
-  return (OverlapTpnBend){p, p * (1 - p), p * (1 - p) * (1 - 2 * p)};
+  return (OverlapBend){p, p * (1 - p), p * (1 - p) * (1 - 2 * p)};
 }
 
 // The part of w that the share decides.
@@ -54,9 +54,9 @@ static void weigh_share(const OverlapTpnRule *rule, double share, int order, Ove
   if (!rule->is_hybrid) return;
   OverlapTpnJet part;
   overlap_tpn_jet_of(weight, order, OVERLAP_TPN_SHARE,
-                     overlap_tpn_jet_bend_rise(share / rule->touch - 1, 1 / rule->touch));
+                     overlap_bend_rise(share / rule->touch - 1, 1 / rule->touch));
   overlap_tpn_jet_of(&part, order, OVERLAP_TPN_SHARE,
-                     overlap_tpn_jet_bend_rise(3 - 2 * share / rule->deep, -2 / rule->deep));
+                     overlap_bend_rise(3 - 2 * share / rule->deep, -2 / rule->deep));
   overlap_tpn_jet_multiply(weight, &part);
 }
 
@@ -69,7 +69,7 @@ static void weigh_confidence(const OverlapTpnRule *rule, const OverlapTpnInputs 
                        itself(inputs->of[OVERLAP_TPN_LOGIT + o]));
     overlap_tpn_jet_add(&mean, 1.0 / rule->order_count, &logit);
   }
-  overlap_tpn_jet_apply(&mean, overlap_tpn_jet_bend_rise(mean.value / rule->logit, 1 / rule->logit));
+  overlap_tpn_jet_apply(&mean, overlap_bend_rise(mean.value / rule->logit, 1 / rule->logit));
   overlap_tpn_jet_multiply(weight, &mean);
 }
 
@@ -82,7 +82,7 @@ static void weigh_range(const OverlapTpnRule *rule, const OverlapTpnInputs *inpu
   overlap_tpn_jet_multiply(weight, &part);
   overlap_tpn_jet_of(&part, weight->order, OVERLAP_TPN_VOLUME + o,
                      clamp(rule, inputs->of[OVERLAP_TPN_VOLUME + o]));
-  overlap_tpn_jet_apply(&part, overlap_tpn_range_overlap_weight(&rule->range, part.value));
+  overlap_tpn_jet_apply(&part, overlap_range_overlap_weight(&rule->range, part.value));
   overlap_tpn_jet_multiply(weight, &part);
 }
 
@@ -111,7 +111,7 @@ bool overlap_tpn_blend_is_beyond(const OverlapTpnRule *rule, const OverlapTpnInp
   bool is_beyond = false;
   for (int o = 0; o < rule->order_count && rule->has_range; o++) {
     double volume = clamp(rule, inputs->of[OVERLAP_TPN_VOLUME + o]).value;
-    is_beyond |= overlap_tpn_range_overlap_weight(&rule->range, volume).value < 1;
+    is_beyond |= overlap_range_overlap_weight(&rule->range, volume).value < 1;
   }
   return is_beyond;
 }
@@ -177,9 +177,8 @@ void overlap_tpn_blend_eval(const OverlapTpnRule *rule, const OverlapTpnInputs *
   OverlapTpnJet weight, other;
   mean_of_orders(rule, inputs, order, volume);
   if (rule->fades) {
-    overlap_tpn_jet_of(
-        &other, order, OVERLAP_TPN_SHARE,
-        overlap_tpn_jet_bend_rise(inputs->of[OVERLAP_TPN_SHARE] / rule->touch, 1 / rule->touch));
+    overlap_tpn_jet_of(&other, order, OVERLAP_TPN_SHARE,
+                       overlap_bend_rise(inputs->of[OVERLAP_TPN_SHARE] / rule->touch, 1 / rule->touch));
     overlap_tpn_jet_multiply(volume, &other);
   }
   if (rule->rounds) keep_below(inputs, volume);

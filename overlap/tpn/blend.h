@@ -29,8 +29,8 @@
 
 #include <stdbool.h>
 
+#include "overlap/pair/range.h"
 #include "overlap/tpn/jet.h"
-#include "overlap/tpn/range.h"
 
 enum { OVERLAP_TPN_MAX_ORDERS = 2 };
 
@@ -40,7 +40,7 @@ typedef struct OverlapTpnRule {
   bool is_hybrid;
   bool keeps_to_range; // the range decides about w
   bool has_range;
-  OverlapTpnRange range;
+  OverlapRange range;
   int order_count;
   double touch, deep; // overlap shares
   double logit;       // z₁

@@ -6,6 +6,8 @@
 #ifndef TETLAP_OVERLAP_TPN_JET_H
 #define TETLAP_OVERLAP_TPN_JET_H
 
+#include "overlap/pair/bend.h"
+
 enum { OVERLAP_TPN_QUANTITIES = 14 };
 
 typedef struct OverlapTpnJet {
@@ -14,19 +16,6 @@ typedef struct OverlapTpnJet {
   double first[OVERLAP_TPN_QUANTITIES];
   double second[OVERLAP_TPN_QUANTITIES][OVERLAP_TPN_QUANTITIES]; // symmetric
 } OverlapTpnJet;
-
-// A function of one number: its value and two derivatives there.
-typedef struct OverlapTpnBend {
-  double value, slope, bend;
-} OverlapTpnBend;
-
-// The step S: from 0 for x ≤ 0 to 1 for x ≥ 1, x being a linear function of slope `rate`; NaN: 0. As S(1 − x)
-// = 1 − S(x), it falls where x does.
-static inline OverlapTpnBend overlap_tpn_jet_bend_rise(double x, double rate) {
-  if (x >= 1) return (OverlapTpnBend){.value = 1};
-  if (!(x > 0)) return (OverlapTpnBend){.value = 0};
-  return (OverlapTpnBend){x * x * (3 - 2 * x), 6 * x * (1 - x) * rate, 6 * (1 - 2 * x) * rate * rate};
-}
 
 static inline void overlap_tpn_jet_constant(OverlapTpnJet *a, int order, double value) {
   a->order = order;
@@ -37,7 +26,7 @@ static inline void overlap_tpn_jet_constant(OverlapTpnJet *a, int order, double 
 }
 
 // A function of the quantity `which` alone.
-static inline void overlap_tpn_jet_of(OverlapTpnJet *a, int order, int which, OverlapTpnBend f) {
+static inline void overlap_tpn_jet_of(OverlapTpnJet *a, int order, int which, OverlapBend f) {
   overlap_tpn_jet_constant(a, order, f.value);
   if (order > 0) a->first[which] = f.slope;
   if (order > 1) a->second[which][which] = f.bend;
@@ -63,7 +52,7 @@ static inline void overlap_tpn_jet_multiply(OverlapTpnJet *a, const OverlapTpnJe
 }
 
 // a = f(a), f at a's value
-static inline void overlap_tpn_jet_apply(OverlapTpnJet *a, OverlapTpnBend f) {
+static inline void overlap_tpn_jet_apply(OverlapTpnJet *a, OverlapBend f) {
   for (int i = 0; i < OVERLAP_TPN_QUANTITIES && a->order > 1; i++)
     for (int j = 0; j < OVERLAP_TPN_QUANTITIES; j++)
       a->second[i][j] = f.slope * a->second[i][j] + f.bend * a->first[i] * a->first[j];

@@ -90,7 +90,7 @@ static Status load(OverlapTpnNetwork *model, const char *path, NetKernelKind ker
         "%s: made for the normalisation '%s'; expected 'unit, V times NUMBER', 'pca, …', 'sorted, …', "
         "'unscaled, …' or 'axis, …'",
         path, model->card.normalisation);
-  model->has_range = overlap_tpn_range_parse(model->card.range, &model->range);
+  model->has_range = overlap_range_parse(model->card.range, &model->range);
   TRY(fold(model, path));
   return create_workspaces(model, kernel, more);
 }

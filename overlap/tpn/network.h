@@ -11,8 +11,8 @@
 #include "net/pass/fold.h"
 #include "net/pass/forward.h"
 #include "net/pass/tangent.h"
+#include "overlap/pair/range.h"
 #include "overlap/tpn/normalise.h"
-#include "overlap/tpn/range.h"
 
 enum { OVERLAP_TPN_NORMALISATION_TEXT = 64, OVERLAP_TPN_ROWS = NET_CHUNK_COLUMNS };
 
@@ -42,7 +42,7 @@ typedef struct OverlapTpnNetwork {
   OverlapTpnNormalisation kind;
   double scale; // the network's output is scale · V' of the normalised pair
   bool has_range;
-  OverlapTpnRange range; // that it was trained on, where the card says it
+  OverlapRange range; // that it was trained on, where the card says it
   int workspace_count;
   OverlapTpnWorkspace *workspaces; // (workspace_count), owned
 } OverlapTpnNetwork;

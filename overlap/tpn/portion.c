@@ -8,9 +8,9 @@
 #include "overlap/exact/exact.h"
 #include "overlap/geo/coplanar.h"
 #include "overlap/pair/invariant.h"
+#include "overlap/pair/simplex.h"
 #include "overlap/separation.h"
 #include "overlap/tpn/share.h"
-#include "overlap/tpn/simplex.h"
 
 enum {
   SIZE = OVERLAP_PAIR_SIZE,
@@ -155,8 +155,8 @@ static bool prepare(const Portion *portion, Slot *slot) {
     bool wants_slope = rule->keeps_to_range && wants_slopes(portion->batch);
     slot->inputs.of[OVERLAP_TPN_FACTOR + o] = normalised->factor;
     slot->inputs.of[OVERLAP_TPN_INSIDE + o] =
-        rule->has_range ? overlap_tpn_range_weight(&rule->range, normalised->pair,
-                                                   wants_slope ? slot->inside_gradient[o] : NULL, NULL)
+        rule->has_range ? overlap_range_weight(&rule->range, normalised->pair,
+                                               wants_slope ? slot->inside_gradient[o] : NULL, NULL)
                         : 1;
   }
   for (int t = 0; t < 2 && rule->rounds; t++)
@@ -287,7 +287,7 @@ static void add(double factor, const double part[SIZE], double gradient[SIZE]) {
 // ∇ of the volume of tetrahedron t.
 static void size_slope(const Slot *slot, const double pair[SIZE], int t, double gradient[SIZE]) {
   memset(gradient, 0, SIZE * sizeof *gradient);
-  overlap_tpn_simplex_volume(pair + HALF * t, gradient + HALF * t);
+  overlap_simplex_volume(pair + HALF * t, gradient + HALF * t);
   for (int i = 0; i < HALF; i++) gradient[HALF * t + i] *= slot->inputs.of[OVERLAP_TPN_SIZE + t];
 }
 
@@ -364,8 +364,8 @@ static void chain_outputs(Chain *chain, const Slot *slot, int o, const float *ra
 // The factor of order o: |det E|, E of the first tetrahedron.
 static void chain_factor(Chain *chain, const Slot *slot, const double pair[SIZE], int o) {
   double lambda[SIZE] = {0}, hessian[SQUARE] = {0}, factor = slot->normalised[o].factor;
-  overlap_tpn_simplex_volume(pair + HALF * o, lambda);
-  overlap_tpn_simplex_add_outer(lambda, factor, -factor, SIZE, hessian);
+  overlap_simplex_volume(pair + HALF * o, lambda);
+  overlap_simplex_add_outer(lambda, factor, -factor, SIZE, hessian);
   for (int i = 0; i < HALF; i++) lambda[i] *= factor;
   keep_slope(chain, OVERLAP_TPN_FACTOR + o, lambda, o);
   add_curvature(chain, slot->partials[OVERLAP_TPN_FACTOR + o], hessian, o);
@@ -373,15 +373,15 @@ static void chain_factor(Chain *chain, const Slot *slot, const double pair[SIZE]
 
 static void chain_size(Chain *chain, const Slot *slot, const double pair[SIZE], int t) {
   double lambda[HALF], hessian[SQUARE] = {0}, volume = slot->inputs.of[OVERLAP_TPN_SIZE + t];
-  overlap_tpn_simplex_volume(pair + HALF * t, lambda);
-  overlap_tpn_simplex_add_outer(lambda, volume, -volume, SIZE, hessian + (SIZE + 1) * HALF * t);
+  overlap_simplex_volume(pair + HALF * t, lambda);
+  overlap_simplex_add_outer(lambda, volume, -volume, SIZE, hessian + (SIZE + 1) * HALF * t);
   size_slope(slot, pair, t, meet(chain, OVERLAP_TPN_SIZE + t));
   add_curvature(chain, slot->partials[OVERLAP_TPN_SIZE + t], hessian, false);
 }
 
 static void chain_range(Chain *chain, const OverlapTpnRule *rule, const Slot *slot, int o) {
   double inner[SIZE], whole[SQUARE], bend[TANGENTS * TANGENTS], gradient[SIZE], hessian[SQUARE];
-  overlap_tpn_range_weight(&rule->range, slot->normalised[o].pair, inner, whole);
+  overlap_range_weight(&rule->range, slot->normalised[o].pair, inner, whole);
   for (int i = 0; i < HALF; i++)
     for (int j = 0; j < HALF; j++) bend[HALF * i + j] = whole[SIZE * (HALF + i) + HALF + j];
   overlap_tpn_normalise_bend_unit(&slot->normalised[o], inner, bend, gradient, hessian);

@@ -36,8 +36,8 @@ static Status print(const char *path, const NetModel_f32 *model, const NetCard *
 static Status stamp(const char *path, const char *config_path, const NetModel_f32 *model,
                     const NetCard *card) {
   AppTrainingConfig config;
-  OverlapTpnRange range;
-  char text[OVERLAP_TPN_RANGE_TEXT];
+  OverlapRange range;
+  char text[OVERLAP_RANGE_TEXT];
   if (model->plan->shape.kind != NET_TPN)
     return status_fail(STATUS_INPUT, "%s: --range is for a TetrahedronPairNet, this is another network",
                        path);
@@ -47,7 +47,7 @@ static Status stamp(const char *path, const char *config_path, const NetModel_f3
                       : status_fail(STATUS_INPUT, "%s: does not train a tpn", config_path);
   app_training_config_destroy(&config);
   TRY(status);
-  overlap_tpn_range_print(&range, text);
+  overlap_range_print(&range, text);
   NetCard stamped = {.normalisation = card->normalisation, .range = text, .provenance = card->provenance};
   TRY(app_training_task_fail(net_weights_write_f32(path, model, &stamped)));
   log_info("%s: range %s", path, text);

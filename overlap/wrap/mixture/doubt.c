@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "overlap/hybrid/share.h"
-#include "overlap/tpn/range.h"
+#include "overlap/pair/range.h"
 #include "overlap/wrap/mixture/mixture.h"
 
 enum { SIZE = OVERLAP_PAIR_SIZE };
@@ -38,10 +38,10 @@ static double share_of_doubt(const OverlapWrap *wrap, const OverlapBatch *portio
 }
 
 // w(x) w(V), with its gradient.
-static double weight_of_range(const OverlapTpnRange *range, const OverlapBatch *portion, int i,
+static double weight_of_range(const OverlapRange *range, const OverlapBatch *portion, int i,
                               double *gradient) {
-  const double within = overlap_tpn_range_weight(range, portion->pairs + SIZE * i, gradient, NULL);
-  const OverlapTpnBend bend = overlap_tpn_range_overlap_weight(range, portion->volume[i]);
+  const double within = overlap_range_weight(range, portion->pairs + SIZE * i, gradient, NULL);
+  const OverlapBend bend = overlap_range_overlap_weight(range, portion->volume[i]);
   for (int r = 0; r < SIZE && gradient; r++)
     gradient[r] = gradient[r] * bend.value + within * bend.slope * portion->gradient[SIZE * i + r];
   return within * bend.value;
@@ -49,7 +49,7 @@ static double weight_of_range(const OverlapTpnRange *range, const OverlapBatch *
 
 // c, with ∇c.
 static double share_of(const OverlapWrap *wrap, const OverlapBatch *portion, int i, double *gradient) {
-  const OverlapTpnRange *range = wrap->inner.ops->range;
+  const OverlapRange *range = wrap->inner.ops->range;
   double by_range[SIZE] = {0}, share = 0, weight = 1;
   if (gradient) memset(gradient, 0, SIZE * sizeof *gradient);
   if (portion->doubt) share = share_of_doubt(wrap, portion, i, gradient);

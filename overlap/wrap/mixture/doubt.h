@@ -2,7 +2,7 @@
 // `hybrid` of a model that tells its doubt B, how far its V may be off, the range of pairs that it was made
 // for, or both: V and x̄ turn to those of clipping where B is not small beside V, as hybrid/share.h has it,
 // and beyond the range. With d the share by the doubt, and w the weights of the pair and of V in the range
-// (tpn/range.h), the share of clipping is
+// (pair/range.h), the share of clipping is
 //
 //     c = 1 − (1 − d) w(x) w(V).
 //

@@ -2,7 +2,7 @@
 #include "overlap/wrap/mixture/fade.h"
 
 #include "overlap/geo/geo.h"
-#include "overlap/tpn/jet.h"
+#include "overlap/pair/bend.h"
 #include "overlap/tpn/share.h"
 #include "overlap/wrap/mixture/mixture.h"
 
@@ -28,7 +28,7 @@ static Status find_closed(const OverlapBatch *portion, int order, Closed *closed
 }
 
 // What is left out, 1 − S, with its derivatives.
-static void derive(const OverlapTpnBend *step, const double *pair, const Closed *closed, int i, int order,
+static void derive(const OverlapBend *step, const double *pair, const Closed *closed, int i, int order,
                    OverlapWrapShares *shares) {
   double *gradient = shares->gradient[i], *hessian = order > 1 ? shares->hessian[i] : NULL, by[SIZE];
   overlap_tpn_share_bend(pair, closed->volume[i], closed->gradient + SIZE * i,
@@ -54,7 +54,7 @@ static Status share(const OverlapWrap *wrap, const OverlapBatch *portion, int or
     leave_out(shares, i, order);
     if (closed.flags[i] & (OVERLAP_DISJOINT | OVERLAP_FLAT)) continue;
     const double q = overlap_tpn_share(pair, closed.volume[i]);
-    const OverlapTpnBend step = overlap_tpn_jet_bend_rise(q / wrap->number, 1 / wrap->number);
+    const OverlapBend step = overlap_bend_rise(q / wrap->number, 1 / wrap->number);
     shares->value[i] = 1 - step.value;
     if (order > 0 && step.slope != 0) derive(&step, pair, &closed, i, order, shares);
   }

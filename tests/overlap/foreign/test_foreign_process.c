@@ -11,7 +11,7 @@
 
 #include "base/machine/interrupt.h"
 #include "model.h"
-#include "overlap/tpn/range.h"
+#include "overlap/pair/range.h"
 
 #define PYTHON(name) TETLAP_SOURCE_DIR "/tests/overlap/foreign/models.py:" name
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "overlap/tpn/range.h"
+#include "overlap/pair/range.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "overlap/tpn/simplex.h"
+#include "overlap/pair/simplex.h"
 
-const double overlap_tpn_range_tail = 0.005;
-const double overlap_tpn_range_band = 1.5;
+const double overlap_range_tail = 0.005;
+const double overlap_range_band = 1.5;
 
 static Vec3 centroid_of(const double pair[24]) {
   Vec3 sum = {0, 0, 0};
@@ -26,10 +26,10 @@ static double square_radius(const double pair[24]) {
   return sum / 8;
 }
 
-OverlapTpnMeasures overlap_tpn_range_measure(const double pair[24]) {
+OverlapRangeMeasures overlap_range_measure(const double pair[24]) {
   double lambda[12];
-  OverlapTpnMeasures measures = {.radius = sqrt(square_radius(pair))};
-  for (int t = 0; t < 2; t++) measures.volume[t] = overlap_tpn_simplex_volume(pair + 12 * t, lambda);
+  OverlapRangeMeasures measures = {.radius = sqrt(square_radius(pair))};
+  for (int t = 0; t < 2; t++) measures.volume[t] = overlap_simplex_volume(pair + 12 * t, lambda);
   return measures;
 }
 
@@ -40,14 +40,14 @@ static int compare(const void *a, const void *b) {
 
 static void find_ends(int count, double *values, double ends[2]) {
   qsort(values, (size_t)count, sizeof *values, compare);
-  int skipped = (int)(overlap_tpn_range_tail * count);
+  int skipped = (int)(overlap_range_tail * count);
   ends[0] = values[skipped];
   ends[1] = values[count - 1 - skipped];
 }
 
-OverlapTpnRange overlap_tpn_range_of(int count, const OverlapTpnMeasures *measures, const double *overlaps,
-                                     double *values) {
-  OverlapTpnRange range = {.overlap = 0};
+OverlapRange overlap_range_of(int count, const OverlapRangeMeasures *measures, const double *overlaps,
+                              double *values) {
+  OverlapRange range = {.overlap = 0};
   for (int i = 0; i < count; i++) values[i] = measures[i].radius;
   find_ends(count, values, range.radius);
   for (int t = 0; t < 2; t++) {
@@ -64,8 +64,8 @@ OverlapTpnRange overlap_tpn_range_of(int count, const OverlapTpnMeasures *measur
   return range;
 }
 
-void overlap_tpn_range_print(const OverlapTpnRange *range, char text[OVERLAP_TPN_RANGE_TEXT]) {
-  snprintf(text, OVERLAP_TPN_RANGE_TEXT,
+void overlap_range_print(const OverlapRange *range, char text[OVERLAP_RANGE_TEXT]) {
+  snprintf(text, OVERLAP_RANGE_TEXT,
            "radius %.9g to %.9g, first volume %.9g to %.9g, second volume %.9g to %.9g, overlap to %.9g",
            range->radius[0], range->radius[1], range->volume[0][0], range->volume[0][1], range->volume[1][0],
            range->volume[1][1], range->overlap);
@@ -75,7 +75,7 @@ static bool is_range(const double ends[2]) {
   return ends[0] >= 0 && ends[1] > 0 && ends[1] >= ends[0] && isfinite(ends[1]);
 }
 
-bool overlap_tpn_range_parse(const char *text, OverlapTpnRange *range) {
+bool overlap_range_parse(const char *text, OverlapRange *range) {
   int used = 0;
   if (sscanf(text, "radius %lf to %lf, first volume %lf to %lf, second volume %lf to %lf, overlap to %lf%n",
              &range->radius[0], &range->radius[1], &range->volume[0][0], &range->volume[0][1],
@@ -89,13 +89,12 @@ bool overlap_tpn_range_parse(const char *text, OverlapTpnRange *range) {
 static const double WITHIN = 1e-6;
 
 // The weight of a measure between two ends, with its derivatives by the measure's logarithm.
-static OverlapTpnBend weigh(double value, const double ends[2]) {
-  double rate = 1 / log(overlap_tpn_range_band);
-  OverlapTpnBend below = overlap_tpn_jet_bend_rise(1 - (log(ends[0] / value) - WITHIN) * rate, rate),
-                 above = overlap_tpn_jet_bend_rise(1 - (log(value / ends[1]) - WITHIN) * rate, -rate);
-  return (OverlapTpnBend){below.value * above.value, below.value * above.slope + below.slope * above.value,
-                          below.value * above.bend + 2 * below.slope * above.slope +
-                              below.bend * above.value};
+static OverlapBend weigh(double value, const double ends[2]) {
+  double rate = 1 / log(overlap_range_band);
+  OverlapBend below = overlap_bend_rise(1 - (log(ends[0] / value) - WITHIN) * rate, rate),
+              above = overlap_bend_rise(1 - (log(value / ends[1]) - WITHIN) * rate, -rate);
+  return (OverlapBend){below.value * above.value, below.value * above.slope + below.slope * above.value,
+                       below.value * above.bend + 2 * below.slope * above.slope + below.bend * above.value};
 }
 
 enum { SIZE = 24, MEASURES = 3 };
@@ -129,17 +128,17 @@ static void add_radius_curvature(const double pair[24], const double slope[24], 
 
 // The measures' weights, and the slopes of their logarithms.
 typedef struct Weights {
-  OverlapTpnBend of[MEASURES]; // radius, volumes
+  OverlapBend of[MEASURES]; // radius, volumes
   double slope[MEASURES][SIZE];
 } Weights;
 
-static Weights find_weights(const OverlapTpnRange *range, const double pair[24]) {
-  OverlapTpnMeasures measures = overlap_tpn_range_measure(pair);
+static Weights find_weights(const OverlapRange *range, const double pair[24]) {
+  OverlapRangeMeasures measures = overlap_range_measure(pair);
   Weights weights = {.of = {weigh(measures.radius, range->radius),
                             weigh(measures.volume[0], range->volume[0]),
                             weigh(measures.volume[1], range->volume[1])}};
   find_radius_slope(pair, weights.slope[0]);
-  for (int t = 0; t < 2; t++) overlap_tpn_simplex_volume(pair + 12 * t, weights.slope[1 + t] + 12 * t);
+  for (int t = 0; t < 2; t++) overlap_simplex_volume(pair + 12 * t, weights.slope[1 + t] + 12 * t);
   return weights;
 }
 
@@ -167,13 +166,13 @@ static void add_curvature(const double pair[24], const Weights *weights, double 
   for (int t = 0; t < 2; t++) {
     double by_volume = others(weights, 1 + t, 1 + t) * weights->of[1 + t].slope;
     if (by_volume != 0)
-      overlap_tpn_simplex_add_outer(weights->slope[1 + t] + 12 * t, 0, -by_volume, SIZE,
-                                    hessian + (SIZE + 1) * 12 * t);
+      overlap_simplex_add_outer(weights->slope[1 + t] + 12 * t, 0, -by_volume, SIZE,
+                                hessian + (SIZE + 1) * 12 * t);
   }
 }
 
-double overlap_tpn_range_weight(const OverlapTpnRange *range, const double pair[24], double *gradient,
-                                double *hessian) {
+double overlap_range_weight(const OverlapRange *range, const double pair[24], double *gradient,
+                            double *hessian) {
   Weights weights = find_weights(range, pair);
   for (int i = 0; i < SIZE && gradient; i++) {
     gradient[i] = 0;
@@ -186,7 +185,7 @@ double overlap_tpn_range_weight(const OverlapTpnRange *range, const double pair[
   return others(&weights, -1, -1);
 }
 
-OverlapTpnBend overlap_tpn_range_overlap_weight(const OverlapTpnRange *range, double overlap) {
-  double width = range->overlap * (overlap_tpn_range_band - 1);
-  return overlap_tpn_jet_bend_rise(1 - (overlap - range->overlap) / width, -1 / width);
+OverlapBend overlap_range_overlap_weight(const OverlapRange *range, double overlap) {
+  double width = range->overlap * (overlap_range_band - 1);
+  return overlap_bend_rise(1 - (overlap - range->overlap) / width, -1 / width);
 }

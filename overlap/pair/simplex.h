@@ -2,15 +2,15 @@
 // The volume of a tetrahedron and its derivatives: with λ_k the gradients of its barycentric coordinates,
 //
 //     ∂ ln|V|/∂x_k = λ_k,   ∂² ln|V|/∂x_kr ∂x_lc = −λ_kc λ_lr.
-#ifndef TETLAP_OVERLAP_TPN_SIMPLEX_H
-#define TETLAP_OVERLAP_TPN_SIMPLEX_H
+#ifndef TETLAP_OVERLAP_PAIR_SIMPLEX_H
+#define TETLAP_OVERLAP_PAIR_SIMPLEX_H
 
 #include <math.h>
 
 #include "base/vec3.h"
 
 // |V| [m³], and λ [1/m], which is infinite where V = 0.
-static inline double overlap_tpn_simplex_volume(const double tet[12], double lambda[12]) {
+static inline double overlap_simplex_volume(const double tet[12], double lambda[12]) {
   Vec3 origin = vec3_at(tet), edge[3], total = {0, 0, 0};
   for (int k = 0; k < 3; k++) edge[k] = vec3_sub(vec3_at(tet + 3 + 3 * k), origin);
   double six = vec3_dot(edge[0], vec3_cross(edge[1], edge[2]));
@@ -24,8 +24,8 @@ static inline double overlap_tpn_simplex_volume(const double tet[12], double lam
 }
 
 // hessian (rows of `stride`) += parallel · λ_kr λ_lc + crossed · λ_kc λ_lr
-static inline void overlap_tpn_simplex_add_outer(const double lambda[12], double parallel, double crossed,
-                                                 int stride, double *hessian) {
+static inline void overlap_simplex_add_outer(const double lambda[12], double parallel, double crossed,
+                                             int stride, double *hessian) {
   for (int i = 0; i < 12; i++)
     for (int j = 0; j < 12; j++)
       hessian[i * stride + j] +=

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What pairs a network of model.h was trained on, in three measures of a normalised pair (normalise.h):
+// What pairs a model was made for, in three measures of a pair: for a TetrahedronPairNet of a normalised one
+// (overlap/tpn/normalise.h), for a model of the user's of the pair as it stands.
 //
 //   radius   root mean square distance of the eight vertices from the first tetrahedron's centroid
 //   volume   of each of the two tetrahedra (with Unit the first is 1/6 always)
@@ -10,48 +11,48 @@
 // order of vertices, and have derivatives wherever a tetrahedron has a volume. Of `axis` they are those of
 // the coordinates that the network is shown, where two edges separate best not of the second tetrahedron
 // itself.
-#ifndef TETLAP_OVERLAP_TPN_RANGE_H
-#define TETLAP_OVERLAP_TPN_RANGE_H
+#ifndef TETLAP_OVERLAP_PAIR_RANGE_H
+#define TETLAP_OVERLAP_PAIR_RANGE_H
 
 #include <stdbool.h>
 
-#include "overlap/tpn/jet.h"
+#include "overlap/pair/bend.h"
 
-enum { OVERLAP_TPN_RANGE_TEXT = 256 };
+enum { OVERLAP_RANGE_TEXT = 256 };
 
-typedef struct OverlapTpnRange {
+typedef struct OverlapRange {
   double radius[2];    // least, most
   double volume[2][2]; // of the first and of the second tetrahedron: least, most
   double overlap;      // most
-} OverlapTpnRange;
+} OverlapRange;
 
 // The measures of one normalised pair.
-typedef struct OverlapTpnMeasures {
+typedef struct OverlapRangeMeasures {
   double radius, volume[2];
-} OverlapTpnMeasures;
+} OverlapRangeMeasures;
 
-OverlapTpnMeasures overlap_tpn_range_measure(const double pair[24]);
+OverlapRangeMeasures overlap_range_measure(const double pair[24]);
 
 // The share of pairs at each end of each measure that a range leaves out.
-extern const double overlap_tpn_range_tail;
+extern const double overlap_range_tail;
 
 // The range of `count` > 0 pairs by their measures, and of their overlaps where these are > 0. Sorts `values`
 // (count), which is scratch memory.
-OverlapTpnRange overlap_tpn_range_of(int count, const OverlapTpnMeasures *measures, const double *overlaps,
-                                     double *values);
+OverlapRange overlap_range_of(int count, const OverlapRangeMeasures *measures, const double *overlaps,
+                              double *values);
 
 // As a weights file's card has it.
-void overlap_tpn_range_print(const OverlapTpnRange *range, char text[OVERLAP_TPN_RANGE_TEXT]);
-bool overlap_tpn_range_parse(const char *text, OverlapTpnRange *range);
+void overlap_range_print(const OverlapRange *range, char text[OVERLAP_RANGE_TEXT]);
+bool overlap_range_parse(const char *text, OverlapRange *range);
 
-// 1 within the range, 0 beyond by the factor overlap_tpn_range_band in any measure, continuously
+// 1 within the range, 0 beyond by the factor overlap_range_band in any measure, continuously
 // differentiable in between; NaN: 0. `gradient` and `hessian` (24, 24) are by the normalised pair; the second
 // or both may be NULL.
-double overlap_tpn_range_weight(const OverlapTpnRange *range, const double pair[24], double *gradient,
-                                double *hessian);
+double overlap_range_weight(const OverlapRange *range, const double pair[24], double *gradient,
+                            double *hessian);
 // The same of the overlap V' ≥ 0 alone, with its derivatives by it.
-OverlapTpnBend overlap_tpn_range_overlap_weight(const OverlapTpnRange *range, double overlap);
+OverlapBend overlap_range_overlap_weight(const OverlapRange *range, double overlap);
 
-extern const double overlap_tpn_range_band;
+extern const double overlap_range_band;
 
 #endif
