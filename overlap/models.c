@@ -79,6 +79,12 @@ static Status fail_unbounded(const char *network, double doubt) {
       network, doubt, network);
 }
 
+static const OverlapOps *find_named(const char *name, size_t length) {
+  for (int m = 0; m < model_count(); m++)
+    if (strlen(models[m]->name) == length && strncmp(models[m]->name, name, length) == 0) return models[m];
+  return NULL;
+}
+
 // `hybrid=NETWORK` and `hybrid:DOUBT=NETWORK`.
 static Status create_hybrid(OverlapModel *model, double doubt, const char *network,
                             const OverlapOptions *given) {
@@ -89,16 +95,16 @@ static Status create_hybrid(OverlapModel *model, double doubt, const char *netwo
                        "hybrid: its number, the relative error of V from which clipping begins, "
                        "is %g; expected a positive one",
                        options.doubt);
+  const OverlapOps *named = find_named(network, strlen(network));
+  if (named && !named->create)
+    return status_fail(STATUS_INPUT,
+                       "hybrid: '%s' has no bound of its error: write a network, as in hybrid=geo, or a model of "
+                       "yours that tells its doubt",
+                       network);
   TRY(overlap_models_create_with(model, "hybrid", network, &options));
   if (isnan(doubt) || model->ops->has_bounds(model->self)) return STATUS_OK;
   overlap_model_destroy(model);
   return fail_unbounded(network, doubt);
-}
-
-static const OverlapOps *find_named(const char *name, size_t length) {
-  for (int m = 0; m < model_count(); m++)
-    if (strlen(models[m]->name) == length && strncmp(models[m]->name, name, length) == 0) return models[m];
-  return NULL;
 }
 
 // What stands behind the wrappers: from a `hybrid=` on, else the model.

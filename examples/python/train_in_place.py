@@ -218,4 +218,11 @@ if __name__ == "__main__":
     parser.add_argument("--seed", type=int, default=1)
     for name, what in (("forces", "forces on vertices"), ("total", "the force on a body"), ("pairs", "each pair")):
         parser.add_argument(f"--{name}", type=float, default=1.0, help=f"weight of the errors of {what}")
-    main(**vars(parser.parse_args()))
+    given = parser.parse_args()
+    if given.count < 1 or given.epochs < 1:
+        parser.error("--count and --epochs: expected 1 or more")
+    try:
+        geo.Geo(given.start)
+    except (tetlap.Error, ValueError) as reason:
+        parser.error(f"--start: {reason}")
+    main(**vars(given))

@@ -63,9 +63,9 @@ class Model:
         self._module = function if torch is not None and isinstance(function, torch.nn.Module) else None
         self._function = function
         self.range = getattr(function, "range", None)
-        if not isinstance(self.range, str):
-            self.range = None  # an attribute of another meaning
-        elif not self.range.startswith("radius "):
+        if callable(self.range):
+            self.range = None  # a method
+        if self.range is not None and not str(self.range).startswith("radius "):
             raise ModelError(f"the range of {name} is {self.range!r}, expected a text such as 'radius 0.1 to 2, first volume "
                              "0.01 to 1, second volume 0.01 to 1, overlap to 0.3'")
         if self._module is not None:

@@ -166,6 +166,11 @@ void fem_run_describe_trouble(const FemRunResult *result, const FemModel *model,
     append_trouble(text, size, &used, "pairs beyond the network's training", place,
                    "try contact.overlap: clip");
   }
+  if ((double)result->contact.pairs.unsound > FEM_DOUBT * (double)result->contact.pairs.tried) {
+    snprintf(place, sizeof place, "%lld of %lld", result->contact.pairs.unsound, result->contact.pairs.tried);
+    append_trouble(text, size, &used, "pairs with a volume that no two such tetrahedra share", place,
+                   "mend the model: with strict= before it a run ends at the first such pair and keeps it");
+  }
   const FemStability *stability = &result->equilibrium.stability;
   if (stability->unstable > 0) {
     char modes[64] = "";

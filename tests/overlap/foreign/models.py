@@ -40,7 +40,7 @@ def ranged_wrong(pairs):
     return box(pairs)
 
 
-ranged_wrong.range = "0.1 to 0.7"
+ranged_wrong.range = (0.1, 0.7)
 
 
 class Made:

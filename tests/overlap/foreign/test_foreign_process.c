@@ -148,7 +148,7 @@ START_TEST(python_that_is_wrong) {
   expect_refused(PYTHON("NUMBER"), STATUS_INPUT, "NUMBER is int, expected a callable");
   expect_refused(PYTHON("wrong_shape"), STATUS_INPUT, "volume of shape (1, 1), expected (1,)");
   expect_refused(PYTHON("ranged_wrong"), STATUS_INPUT,
-                 "the range of ranged_wrong is '0.1 to 0.7', expected a text");
+                 "the range of ranged_wrong is (0.1, 0.7), expected a text");
   expect_refused(PYTHON("wrong_key"), STATUS_INPUT, "'volumes', which is none of volume");
   expect_refused(PYTHON("no_numbers"), STATUS_INPUT, "no array of numbers");
   expect_refused(PYTHON("complex_numbers"), STATUS_INPUT, "its type is complex128, expected float64");
