@@ -367,6 +367,18 @@ START_TEST(such_volumes_end_a_run_or_are_counted_as_asked) {
 }
 END_TEST
 
+START_TEST(a_run_of_such_volumes_has_trouble) {
+  char text[20000], words[1000];
+  snprintf(words, sizeof words,
+           "run %s/examples/02_two_blocks.yaml --set time.end=0.1 --set output.vtu=false --overlap %s -o "
+           "/tmp/tetlap-foreign-trouble; rm -r /tmp/tetlap-foreign-trouble",
+           TETLAP_SOURCE_DIR, TETLAP_MODEL_8);
+  run_program(words, text);
+  const char *trouble = strstr(text, "trouble:");
+  ck_assert_msg(trouble && strstr(trouble, "strict="), "%s", text);
+}
+END_TEST
+
 // A model that is right is left alone, to the bit.
 START_TEST(what_comes_out_is_looked_at_of_any_model) {
   static double own[PAIRS][24], slopes[2][PAIRS][72];
@@ -458,6 +470,7 @@ int main(void) {
   tcase_add_test(cases, volumes_that_none_can_have_are_flagged);
   tcase_add_loop_test(cases, a_coordinate_that_is_not_finite_is_named, 0, 15);
   tcase_add_loop_test(cases, such_volumes_end_a_run_or_are_counted_as_asked, 0, 3);
+  tcase_add_test(cases, a_run_of_such_volumes_has_trouble);
   tcase_add_loop_test(cases, what_comes_out_is_looked_at_of_any_model, 0, 2);
   tcase_add_loop_test(cases, the_pair_that_ends_a_run_is_written_to_its_folder, 0, 2);
   tcase_add_test(cases, flat_and_disjoint_pairs_are_not_asked_for_unless_ghosts_are_kept);
