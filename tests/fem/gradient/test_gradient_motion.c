@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gradients of motions against central differences of replays with the same steps, and what has none.
-#include "base/memory.h"
-#include "base/random.h"
-#include "fem/gradient/damping.h"
 #include "folder.h"
 #include "replays.h"
 
@@ -98,77 +95,6 @@ START_TEST(a_damped_block_thrown_upon_another_agrees_with_differences_of_replays
 }
 END_TEST
 
-// λ · f where positions and velocities are `share` along a way.
-static double work_along(FemSystem *system, const FemState *state, const double *way, const double *lambda,
-                         double share, bool moves) {
-  size_t count = 3 * (size_t)system->model->vertex_count;
-  double *there = memory_copy(moves ? state->positions : state->velocities, count, sizeof *there);
-  double *force = memory_zeroed(count, sizeof *force), work = 0;
-  FemState other = *state;
-  *(moves ? &other.positions : &other.velocities) = there;
-  for (size_t i = 0; i < count; i++) there[i] += share * way[i];
-  ck_assert_ok(fem_effect_damping.add_force(fem_system_effect(system, &fem_effect_damping), &other, force));
-  for (size_t i = 0; i < count; i++) work += lambda[i] * force[i];
-  memory_free(there);
-  memory_free(force);
-  return work;
-}
-
-// What the derivative leaves of λ · f along the whole way, its half and its quarter. Returns λ · f here.
-static double find_left(FemSystem *system, const FemState *state, const FemDamping *damping,
-                        const double *way, const double *lambda, bool moves, double left[3]) {
-  double slope = 0, here = work_along(system, state, way, lambda, 0, moves);
-  for (size_t i = 0; i < damping->value_count; i++)
-    slope += way[i] * (moves ? damping->now : damping->rate)[i];
-  ck_assert_double_gt(fabs(slope), 0);
-  for (int k = 0; k < 3; k++) {
-    double share = 1.0 / (1 << k);
-    left[k] = work_along(system, state, way, lambda, share, moves) - here - share * slope;
-  }
-  return here;
-}
-
-// Forces are linear in velocities: the derivative leaves nothing. They are quadratic in positions: what it
-// leaves falls by four where the way is halved.
-static void check_pull(FemSystem *system, FemState *state, FemDamping *damping, double *way, double *lambda) {
-  double left[3];
-  Random random = random_seeded(7, 0);
-  for (size_t i = 0; i < damping->value_count; i++) {
-    state->positions[i] += 0.01 * random_between(&random, -0.5, 0.5);
-    state->velocities[i] = random_between(&random, -0.5, 0.5);
-    way[i] = 0.01 * random_between(&random, -0.5, 0.5);
-    lambda[i] = 1e-3 * random_between(&random, -0.5, 0.5);
-  }
-  fem_damping_begin(damping, state);
-  ck_assert_ok(fem_damping_pull(damping, lambda, 1));
-  double here = find_left(system, state, damping, way, lambda, false, left);
-  ck_assert_double_le(fabs(left[0]), 1e-12 * fabs(here));
-  here = find_left(system, state, damping, way, lambda, true, left);
-  ck_assert_double_gt(fabs(left[0]), 1e-6 * fabs(here));
-  for (int k = 0; k < 2; k++) ck_assert_near(left[k], 4 * left[k + 1], 1e-9 * fabs(left[k]));
-}
-
-START_TEST(what_damping_has_by_positions_and_velocities_leaves_the_second_order) {
-  SceneRun scene;
-  FemSystem system;
-  FemState state;
-  FemDamping damping;
-  scene_open(&scene, "gradient_damped", NULL);
-  ck_assert_ok(fem_system_create(&system, &scene.model));
-  ck_assert_ok(fem_system_create_state(&system, &state));
-  ck_assert_ok(fem_damping_create(&damping, &system));
-  double *way = memory_zeroed(damping.value_count, sizeof *way);
-  double *lambda = memory_zeroed(damping.value_count, sizeof *lambda);
-  check_pull(&system, &state, &damping, way, lambda);
-  memory_free(way);
-  memory_free(lambda);
-  fem_damping_destroy(&damping);
-  fem_state_destroy(&state);
-  fem_system_destroy(&system);
-  scene_close(&scene);
-}
-END_TEST
-
 static void refuse(const char *override, const char *by, const char *why) {
   SceneRun scene;
   FemParameter parameter;
@@ -212,7 +138,6 @@ int main(void) {
   tcase_add_test(test_case, a_spinning_block_of_two_materials_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_motion_that_ends_in_contact_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_damped_block_thrown_upon_another_agrees_with_differences_of_replays);
-  tcase_add_test(test_case, what_damping_has_by_positions_and_velocities_leaves_the_second_order);
   tcase_add_test(test_case, motions_without_a_gradient_are_refused_by_name);
   return suite_run("gradient_motion", test_case, 300);
 }
