@@ -207,23 +207,21 @@ static bool evaluates_near(const ContactSystem *system) {
 }
 
 static Status update(ContactSystem *system, double time, const double *positions, const double *velocities,
-                     double step, bool *has_changed) {
-  bool changed;
+                     double step) {
   positions = place(system, positions);
   TRY(contact_candidates_update(&system->candidates, &system->layout, time, positions,
-                                contact_system_spread(system, velocities), step, &changed));
+                                contact_system_spread(system, velocities), step));
   system->counters.searches = system->candidates.searches;
-  if (has_changed) *has_changed = changed;
   if (evaluates_near(system))
     TRY(contact_near_update(&system->near, &system->layout, &system->candidates, time, positions));
   return STATUS_OK;
 }
 
 Status contact_system_update(ContactSystem *system, double time, const double *positions,
-                             const double *velocities, double step, bool *has_changed) {
+                             const double *velocities, double step) {
   ContactCounters *counters = &system->counters;
   double began = clock_wall_s(), searched_s = system->candidates.search_s;
-  Status status = update(system, time, positions, velocities, step, has_changed);
+  Status status = update(system, time, positions, velocities, step);
   searched_s = system->candidates.search_s - searched_s;
   counters->broad_s += searched_s;
   counters->update_s += clock_wall_s() - began - searched_s;
@@ -366,7 +364,7 @@ Status contact_system_hold(ContactSystem *system, double time, const double *pos
   contact_near_forget(&system->near);
   contact_evaluation_start_over(&system->evaluation, layout);
   contact_system_forget(system);
-  TRY(update(system, time, positions, velocities, step, NULL));
+  TRY(update(system, time, positions, velocities, step));
   if (!is_held) return STATUS_OK;
   positions = place(system, positions);
   TRY(evaluate(system, time, positions));

@@ -54,10 +54,9 @@ void contact_system_destroy(ContactSystem *system);
 // After an accepted step (and once before the first evaluation): rebuilds the candidate lists where the
 // motion asks for it. `velocities` (vertex, 3) and `step` [s]
 // (the next step's expected length) size the margin: as wide as two bodies are apart while no pair is near,
-// at most def.margin otherwise, so that nothing passes through anything within one step. `*has_changed` (may
-// be NULL): the list of candidates differs from the one before.
+// at most def.margin otherwise, so that nothing passes through anything within one step.
 Status contact_system_update(ContactSystem *system, double time, const double *positions,
-                             const double *velocities, double step, bool *has_changed);
+                             const double *velocities, double step);
 
 // Keeps the list of candidates, if it has just been made: where everything is the same again, to the last
 // bit, a list that is made anew is a copy of it. One is kept at a time.

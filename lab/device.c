@@ -407,7 +407,7 @@ static Status run(const Options *options) {
 }
 
 static int run_command(int argument_count, char **arguments) {
-  Options options = {.common = app_bench_options_default(9), .batches = {{4096}, 1}};
+  Options options = {.common = app_bench_options_default(), .batches = {{4096}, 1}};
   for (int m = 0; m < DEVICE_OVERLAP_MODELS; m++) options.wants_model[m] = true;
   for (int i = 0; i < APP_BENCH_SET_COUNT; i++) options.wants_set[i] = true;
   for (int i = 0; i < QUANTITY_COUNT; i++) options.wants_quantity[i] = options.wants_residence[i] = true;

@@ -480,7 +480,7 @@ static Status run(const Options *options) {
 }
 
 static int run_command(int argument_count, char **arguments) {
-  Options options = {.common = app_bench_options_default(9),
+  Options options = {.common = app_bench_options_default(),
                      .nets = {"tpn", "geo", "geo-small"},
                      .net_count = 3,
                      .wants_quantity = {true, true},

@@ -41,7 +41,7 @@ static inline void start(Scene *scene, const char *model) {
   for (int k = 0; k < BLOCKS_MAX * (BLOCKS_MAX + 1); k++) laws[k] = scene->law;
   def.pair_laws = laws;
   ck_assert_ok(contact_system_create(&scene->system, &def));
-  ck_assert_ok(contact_system_update(scene->system, 0, scene->blocks.x, scene->still, 0.01, NULL));
+  ck_assert_ok(contact_system_update(scene->system, 0, scene->blocks.x, scene->still, 0.01));
 }
 
 static inline void destroy(Scene *scene) {
@@ -57,7 +57,7 @@ static inline double energy_at(const Scene *scene, const double *x) {
 }
 
 static inline void move(const Scene *scene) {
-  ck_assert_ok(contact_system_update(scene->system, 0, scene->blocks.x, scene->still, 0.01, NULL));
+  ck_assert_ok(contact_system_update(scene->system, 0, scene->blocks.x, scene->still, 0.01));
 }
 
 // Owned by the caller (free).

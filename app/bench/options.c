@@ -9,8 +9,8 @@
 
 enum { MOST_BATCH = 10000000 };
 
-AppBenchOptions app_bench_options_default(int repeats) {
-  return (AppBenchOptions){.threads = 1, .repeats = repeats, .thread_list = {{1}, 1}};
+AppBenchOptions app_bench_options_default(void) {
+  return (AppBenchOptions){.threads = 1, .repeats = 9, .thread_list = {{1}, 1}};
 }
 
 int app_bench_list_largest(const AppBenchList *list) {

@@ -27,8 +27,8 @@ typedef struct AppBenchOptions {
   AppTableFormat format;
 } AppBenchOptions;
 
-// One thread, `repeats` rounds, a table.
-AppBenchOptions app_bench_options_default(int repeats);
+// One thread, nine rounds, a table.
+AppBenchOptions app_bench_options_default(void);
 
 // --threads, --repeat, --json, --csv and --markdown, for the table of a bench; AppBenchOptions holds the
 // bench's own defaults before.

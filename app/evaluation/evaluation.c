@@ -44,16 +44,16 @@ void app_evaluation_end(AppEvaluationRun *run) {
   *run = (AppEvaluationRun){0};
 }
 
-static double length_of(const double *x, int count) {
+static double length_of(const double x[SIZE]) {
   double sum = 0;
-  for (int i = 0; i < count; i++) sum += x[i] * x[i];
+  for (int i = 0; i < SIZE; i++) sum += x[i] * x[i];
   return sqrt(sum);
 }
 
 static double distance_of(const double a[SIZE], const double b[SIZE]) {
   double difference[SIZE];
   for (int i = 0; i < SIZE; i++) difference[i] = a[i] - b[i];
-  return length_of(difference, SIZE);
+  return length_of(difference);
 }
 
 static Vec3 force_of(const double gradient[SIZE]) {
@@ -159,7 +159,7 @@ bool app_evaluation_coordinates(const double pair[24], const double x[3], double
 static void add_angle(AppEvaluationRun *run, const double truth[SIZE], const double told[SIZE]) {
   Vec3 a = force_of(truth), b = force_of(told);
   // of a tetrahedron inside the other nothing but rounding is left
-  if (!(vec3_length(a) > 1e-9 * length_of(truth, SIZE)) || isnan(told[0])) return;
+  if (!(vec3_length(a) > 1e-9 * length_of(truth)) || isnan(told[0])) return;
   double angle = atan2(vec3_length(vec3_cross(a, b)), vec3_dot(a, b));
   run->angles[run->angle_count++] = vec3_length(b) > 0 ? DEGREES * angle : 180;
 }
@@ -191,7 +191,7 @@ static void add_inside(AppEvaluationRun *run, const Block *block, size_t i) {
   sums->bin_accuracy[bin] += block->volume[i] > 0 && bin_of(block->volume[i]) == bin;
   run->bins[bin]++;
   run->true_volume += volume;
-  double size = length_of(truth, SIZE), difference = distance_of(told, truth);
+  double size = length_of(truth), difference = distance_of(told, truth);
   run->true_gradient += size;
   sums->gradient_error += difference;
   run->gradient_errors[sums->inside++] = difference / size;
@@ -202,7 +202,7 @@ static void add_inside(AppEvaluationRun *run, const Block *block, size_t i) {
 static void add_outside(AppEvaluationRun *run, const Block *block, size_t i) {
   run->outside++;
   run->sums.ghost_volume += fabs(block->volume[i]);
-  run->sums.ghost_gradient += length_of(block->gradient + i * SIZE, SIZE);
+  run->sums.ghost_gradient += length_of(block->gradient + i * SIZE);
 }
 
 static void add_confidence(AppEvaluationRun *run, double logit, bool intersects) {

@@ -245,7 +245,7 @@ Status app_job_write_manifest(const AppJob *job) {
   record_integer(manifest, "threads", cpu_thread_count());
   record_text(manifest, "command", app_versions_command());
   record_merge(record_child(manifest, "inputs"), job->inputs);
-  Status status = app_scene_write_resolved(&job->scene, manifest, "scene");
+  Status status = app_scene_write_resolved(&job->scene, manifest);
   if (!status) status = write_record(job->directory, "manifest.json", manifest);
   record_destroy(manifest);
   return status;

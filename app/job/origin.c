@@ -8,18 +8,12 @@
 #include "app/cli/versions.h"
 #include "app/scene/write.h"
 
-// The absolute path, or as it is if that cannot be found.
-static void record_path(Record *record, const char *key, const char *path) {
-  char absolute[PATH_MAX];
-  record_text(record, key, realpath(path, absolute) ? absolute : path);
-}
-
 // The scene but for what changes no result.
 static Status record_scene(const FemSceneDef *scene, Record *origin) {
   FemSceneDef same = *scene; // borrows all that it points to
   same.threads = 0;
   same.checkpoint_seconds = 0;
-  return app_scene_write_resolved(&same, origin, "scene");
+  return app_scene_write_resolved(&same, origin);
 }
 
 Status app_origin_make(const AppJob *job, const AppJobOptions *options, const char *overlap,
@@ -29,10 +23,11 @@ Status app_origin_make(const AppJob *job, const AppJobOptions *options, const ch
   record_text(record, "program", app_versions_line());
   record_text(record, "instructions", app_versions_simd());
   record_text(record, "command", app_versions_command());
-  record_path(record, "scene_file", options->scene_path);
+  char absolute[PATH_MAX], word[PATH_MAX];
+  const char *path = options->scene_path;
+  record_text(record, "scene_file", realpath(path, absolute) ? absolute : path);
   RecordList *overrides = record_list(record, "set");
   for (int i = 0; i < options->override_count; i++) record_append_text(overrides, options->overrides[i]);
-  char word[PATH_MAX];
   record_text(record, "overlap", overlap && app_model_names_settle(overlap, word) ? word : overlap);
   record_merge(record, job->inputs);
   Status status = record_scene(&job->scene, record);

@@ -151,7 +151,7 @@ static Status check_origin(const FemModel *model, const char *folder, const FemC
   Record *origin = NULL, *own = record_new();
   if (!own) return status_no_memory("the start");
   Status status = record_parse(&origin, state->origin, strlen(state->origin), folder);
-  if (!status) status = app_scene_write_resolved(model->scene, own, "scene");
+  if (!status) status = app_scene_write_resolved(model->scene, own);
   if (!status) status = check_bodies(folder, origin, record_find(own, "scene"), inputs);
   if (origin) record_destroy(origin);
   record_destroy(own);

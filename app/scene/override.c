@@ -62,7 +62,7 @@ static Status step_into_list(const char *override, SceneNode *list, const char *
 static Status step_into_map(const char *override, SceneNode *map, const char *word, SceneNode **child) {
   *child = app_scene_tree_find(map, word);
   if (*child) return STATUS_OK;
-  *child = app_scene_tree_add(map, word, SCENE_NODE_NULL);
+  *child = app_scene_tree_add(map, word);
   if (!*child) return status_no_memory("the scene");
   (*child)->origin = override;
   (*child)->line = (*child)->key_line = 0;

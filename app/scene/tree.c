@@ -122,7 +122,7 @@ static void attach(SceneNode *parent, SceneNode *child) {
   parent->count++;
 }
 
-SceneNode *app_scene_tree_add(SceneNode *parent, const char *key, SceneNodeKind kind) {
+SceneNode *app_scene_tree_add(SceneNode *parent, const char *key) {
   SceneNode *child = memory_zeroed(1, sizeof *child);
   char *copy = key ? memory_copy(key, strlen(key) + 1, 1) : NULL;
   if (!child || (key && !copy)) {
@@ -130,8 +130,8 @@ SceneNode *app_scene_tree_add(SceneNode *parent, const char *key, SceneNodeKind 
     memory_free(copy);
     return NULL;
   }
-  *child =
-      (SceneNode){.kind = kind, .origin = parent->origin, .line = parent->line, .column = parent->column};
+  *child = (SceneNode){
+      .kind = SCENE_NODE_NULL, .origin = parent->origin, .line = parent->line, .column = parent->column};
   child->key = copy;
   attach(parent, child);
   return child;
@@ -284,7 +284,7 @@ static Status add_child(Parser *parser, SceneNode *parent, const char *key, Scen
   if (++parser->node_count > SCENE_TREE_MAX_NODES)
     return app_scene_tree_fail(parent, "more than %d values; a scene of that size is not read",
                                (int)SCENE_TREE_MAX_NODES);
-  *child = app_scene_tree_add(parent, key, SCENE_NODE_NULL);
+  *child = app_scene_tree_add(parent, key);
   return *child ? STATUS_OK : status_no_memory("the scene file");
 }
 

@@ -60,7 +60,7 @@ SceneNode *app_scene_tree_at(const SceneNode *node, int index);
 
 // A new empty node of that kind, as the last child of `parent` under a copy of `key` (NULL in a list), at the
 // parent's place. NULL: no memory.
-SceneNode *app_scene_tree_add(SceneNode *parent, const char *key, SceneNodeKind kind);
+SceneNode *app_scene_tree_add(SceneNode *parent, const char *key);
 // Puts the value of `source` (a root) in the place of the value of `node`; `source` is used up.
 void app_scene_tree_replace(SceneNode *node, SceneNode *source);
 // Every node of the tree is from the command line: line 0.

@@ -190,10 +190,10 @@ Status app_scene_write_value(const SceneKey *key, const void *self, Record *reco
   return STATUS_OK;
 }
 
-Status app_scene_write_resolved(const FemSceneDef *scene, Record *parent, const char *name) {
+Status app_scene_write_resolved(const FemSceneDef *scene, Record *parent) {
   void *defaults;
   TRY(app_scene_read_create_defaults(&app_scene_keys_root, &defaults));
-  Status status = write_keys(&app_scene_keys_root, scene, defaults, record_child(parent, name));
+  Status status = write_keys(&app_scene_keys_root, scene, defaults, record_child(parent, "scene"));
   app_scene_read_destroy_defaults(&app_scene_keys_root, defaults);
   return status;
 }

@@ -9,7 +9,7 @@
 
 // Puts the scene with all its defaults under `name` into `parent`. What it writes is a scene again, with the
 // same definition; mesh paths stay as they were written, relative to scene->path.
-Status app_scene_write_resolved(const FemSceneDef *scene, Record *parent, const char *name);
+Status app_scene_write_resolved(const FemSceneDef *scene, Record *parent);
 
 // Writes the value of one key other than a section, as it stands in the struct that the key's section
 // describes, under `name`.

@@ -35,18 +35,18 @@ static void judge_sharp(const AppStressRun *run, AppStressRow *row) {
   double depth = app_stress_run_highest(run, 0, 1, 1) - app_stress_run_lowest(run, 0, 1, 1);
   double young = run->model.parts[1].material.young;
   app_stress_ask_most(row, "force over E A", run->result.contact.force_max / (young * width * depth), 1);
-  app_stress_ask_most(row, "asymmetry in x", app_stress_run_asymmetry(run, 1, 0, 0), 1e-3);
-  app_stress_ask_most(row, "asymmetry in y", app_stress_run_asymmetry(run, 1, 1, 0), 1e-3);
+  app_stress_ask_most(row, "asymmetry in x", app_stress_run_asymmetry(run, 0), 1e-3);
+  app_stress_ask_most(row, "asymmetry in y", app_stress_run_asymmetry(run, 1), 1e-3);
 }
 
-// The tilt of the top: highest less lowest of its vertices, over its width.
-static double tilt_of(const AppStressRun *run, int frame, int body) {
-  double top = app_stress_run_highest(run, 0, body, 2), low = INFINITY, high = -INFINITY;
-  double width = app_stress_run_highest(run, 0, body, 0) - app_stress_run_lowest(run, 0, body, 0);
-  for (int a = run->model.bodies[body].vertex_begin; a < run->model.bodies[body].vertex_end; a++) {
+// The tilt of the first body's top at the end: highest less lowest of its vertices, over its width.
+static double tilt_of(const AppStressRun *run) {
+  double top = app_stress_run_highest(run, 0, 0, 2), low = INFINITY, high = -INFINITY;
+  double width = app_stress_run_highest(run, 0, 0, 0) - app_stress_run_lowest(run, 0, 0, 0);
+  for (int a = run->model.bodies[0].vertex_begin; a < run->model.bodies[0].vertex_end; a++) {
     if (run->model.rest[3 * a + 2] < top - 1e-9) continue;
-    low = fmin(low, app_stress_run_position(run, frame, a)[2]);
-    high = fmax(high, app_stress_run_position(run, frame, a)[2]);
+    low = fmin(low, app_stress_run_position(run, -1, a)[2]);
+    high = fmax(high, app_stress_run_position(run, -1, a)[2]);
   }
   return (high - low) / width;
 }
@@ -54,7 +54,7 @@ static double tilt_of(const AppStressRun *run, int frame, int body) {
 static void judge_cliff(const AppStressRun *run, AppStressRow *row) {
   double before[3], after[3];
   app_stress_run_centre(run, 0, 0, before), app_stress_run_centre(run, -1, 0, after);
-  app_stress_ask_most(row, "tilt", tilt_of(run, -1, 0), 0.01);
+  app_stress_ask_most(row, "tilt", tilt_of(run), 0.01);
   app_stress_ask_most(row, "sideways", hypot(after[0] - before[0], after[1] - before[1]) / 0.1, 0.01);
   app_stress_ask_most(row, "fall", (before[2] - after[2]) / 0.1, 0.02);
 }
@@ -75,7 +75,7 @@ static void judge_tiles(const AppStressRun *run, AppStressRow *row) {
   app_stress_ask_most(row, "sideways over the way", fabs(after[1] - before[1]) / way, 1e-3);
   app_stress_ask_least(row, "speed kept", (after[0] - last[0]) / step / 0.8, 0.98);
   app_stress_ask_most(row, "jump over the size", (highest - before[2]) / 0.1, 5e-3);
-  app_stress_ask_most(row, "tilt", tilt_of(run, -1, 0), 0.01);
+  app_stress_ask_most(row, "tilt", tilt_of(run), 0.01);
 }
 
 static void judge_tight(const AppStressRun *run, AppStressRow *row) {
@@ -201,14 +201,14 @@ static void judge_crush(const AppStressRun *run, AppStressRow *row) {
   for (int f = 0; f < app_stress_run_frames(run); f++)
     least = fmin(least, app_stress_run_highest(run, f, 0, 2));
   app_stress_ask_occurred(row, "pressed to, of its height (negative)", -least / 0.1, -0.65);
-  app_stress_ask_most(row, "distortion at the end", app_stress_run_distortion(run, -1), 0.02);
+  app_stress_ask_most(row, "distortion at the end", app_stress_run_distortion(run), 0.02);
 }
 
 static void judge_inverted(const AppStressRun *run, AppStressRow *row) {
   app_stress_ask_occurred(row, "inverted at first (−det F)", -run->result.min_det_F, 1e-3);
   app_stress_ask_occurred(row, "steps told of", (double)run->result.trouble.of[FEM_TROUBLE_INVERTED].steps,
                           1);
-  app_stress_ask_most(row, "distortion at the end", app_stress_run_distortion(run, -1), 0.05);
+  app_stress_ask_most(row, "distortion at the end", app_stress_run_distortion(run), 0.05);
 }
 
 // The middle vertex goes through its neighbours.

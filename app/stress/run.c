@@ -119,12 +119,12 @@ bool app_stress_run_is_finite(const AppStressRun *run) {
   return count > 0;
 }
 
-double app_stress_run_distortion(const AppStressRun *run, int frame) {
+double app_stress_run_distortion(const AppStressRun *run) {
   double worst = 0;
   for (int e = 0; e < run->model.tet_count; e++) {
     if (run->model.bodies[run->model.tet_body[e]].is_obstacle) continue;
     Vec3 x[4];
-    for (int k = 0; k < 4; k++) x[k] = vec3_at(app_stress_run_position(run, frame, run->model.tets[e][k]));
+    for (int k = 0; k < 4; k++) x[k] = vec3_at(app_stress_run_position(run, -1, run->model.tets[e][k]));
     double det = vec3_det4(x[0], x[1], x[2], x[3]) / (6 * run->model.volumes[e]);
     worst = fmax(worst, fabs(det - 1));
   }
@@ -132,10 +132,10 @@ double app_stress_run_distortion(const AppStressRun *run, int frame) {
 }
 
 // The vertex whose place at rest is the mirror image of that of `a`.
-static int find_mirrored(const AppStressRun *run, const FemModelBody *body, int a, int axis, double at) {
+static int find_mirrored(const AppStressRun *run, const FemModelBody *body, int a, int axis) {
   Vec3 image = vec3_at(run->model.rest + 3 * a);
   double *component = axis == 0 ? &image.x : axis == 1 ? &image.y : &image.z;
-  *component = 2 * at - *component;
+  *component = -*component;
   int nearest = body->vertex_begin;
   double least = INFINITY;
   for (int b = body->vertex_begin; b < body->vertex_end; b++) {
@@ -145,14 +145,14 @@ static int find_mirrored(const AppStressRun *run, const FemModelBody *body, int 
   return nearest;
 }
 
-double app_stress_run_asymmetry(const AppStressRun *run, int body, int axis, double at) {
-  const FemModelBody *b = &run->model.bodies[body];
+double app_stress_run_asymmetry(const AppStressRun *run, int axis) {
+  const FemModelBody *b = &run->model.bodies[1];
   double worst = 0, size = 0;
   for (int a = b->vertex_begin; a < b->vertex_end; a++) {
-    int m = find_mirrored(run, b, a, axis, at);
+    int m = find_mirrored(run, b, a, axis);
     const double *here = app_stress_run_position(run, -1, a), *there = app_stress_run_position(run, -1, m);
     for (int c = 0; c < 3; c++) {
-      double image = c == axis ? 2 * at - there[c] : there[c];
+      double image = c == axis ? -there[c] : there[c];
       worst = fmax(worst, fabs(here[c] - image));
     }
     size = fmax(size, vec3_length(vec3_sub(vec3_at(run->model.rest + 3 * a),

@@ -41,10 +41,10 @@ double app_stress_run_highest(const AppStressRun *run, int frame, int body, int 
 bool app_stress_run_force(const AppStressRun *run, int frame, const char *name, double force[3]);
 // Whether every position of every frame is a number.
 bool app_stress_run_is_finite(const AppStressRun *run);
-// The element of a frame that is furthest from its volume at rest: |det F − 1|.
-double app_stress_run_distortion(const AppStressRun *run, int frame);
-// How far the last frame of a body is from its mirror image in axis = `at`, over the body's size; the mesh
-// must be symmetric.
-double app_stress_run_asymmetry(const AppStressRun *run, int body, int axis, double at);
+// The element of the last frame that is furthest from its volume at rest: |det F − 1|.
+double app_stress_run_distortion(const AppStressRun *run);
+// How far the last frame of the second body is from its mirror image in the plane axis = 0, over the body's
+// size; the mesh must be symmetric.
+double app_stress_run_asymmetry(const AppStressRun *run, int axis);
 
 #endif

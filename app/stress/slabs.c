@@ -115,7 +115,7 @@ static Status slide(Slabs *slabs, const double *velocities) {
   for (int k = 0; k < SLIDES && !run->is_cut; k++) {
     slabs->slid = k * STEP * edge_of(run, 0);
     place(slabs);
-    TRY(contact_system_update(slabs->contact, 0, slabs->positions, velocities, 0.01, NULL));
+    TRY(contact_system_update(slabs->contact, 0, slabs->positions, velocities, 0.01));
     TRY(contact_evaluate(slabs->contact, 0, 0, slabs->positions, &slabs->evaluation));
     run->extra[LEAST_PAIRS] = fmin(run->extra[LEAST_PAIRS], slabs->evaluation->pair_count);
     run->extra[EVALUATIONS]++;

@@ -129,7 +129,7 @@ static bool is_same_scene(const Record *manifest, const FemSceneDef *scene) {
   RecordDifference difference;
   bool is_same = now && version && strcmp(version, app_versions_program()) == 0 &&
                  record_find_number(manifest, "format") == APP_FORMAT &&
-                 app_scene_write_resolved(&same, now, "scene") == STATUS_OK &&
+                 app_scene_write_resolved(&same, now) == STATUS_OK &&
                  !record_differ(was, record_find(now, "scene"), &difference);
   record_destroy(now);
   return is_same;

@@ -281,19 +281,6 @@ static Status search_interfaces(ContactCandidates *candidates, const Search *sea
   return status_fail(found->status, "the search for pairs in contact failed once and not again");
 }
 
-// Whether what was found is in the list, and nothing else.
-static bool is_as_found(const ContactCandidates *candidates, int interface_count) {
-  const ContactCandidateList *list = &candidates->list;
-  for (int f = 0; f < interface_count; f++) {
-    const ContactPairList *found = &candidates->found[f].pairs;
-    if (list->begin[f + 1] - list->begin[f] != found->count) return false;
-    for (int k = 0; k < found->count; k++)
-      if (memcmp(list->pairs[list->begin[f] + k].cells, found->pairs[k], sizeof *found->pairs) != 0)
-        return false;
-  }
-  return true;
-}
-
 // The pairs of all interfaces, in their order.
 static Status collect_found(ContactCandidates *candidates, int interface_count) {
   ContactCandidateList *list = &candidates->list;
@@ -326,12 +313,11 @@ void contact_candidates_list_cells(ContactCandidateList *list, unsigned char *is
 }
 
 static Status search_all(ContactCandidates *candidates, const ContactLayout *layout, double time,
-                         const double *positions, bool *has_changed) {
+                         const double *positions) {
   Search search = {candidates, layout, time, positions};
   candidates->searches++;
   bound_bodies(candidates, layout, positions);
   TRY(search_interfaces(candidates, &search));
-  *has_changed = !candidates->is_made || !is_as_found(candidates, layout->interface_count);
   TRY(collect_found(candidates, layout->interface_count));
   contact_candidates_list_cells(&candidates->list, candidates->is_listed);
   return STATUS_OK;
@@ -409,10 +395,9 @@ static bool is_kept(const ContactCandidates *candidates, const ContactLayout *la
 }
 
 static Status find_all(ContactCandidates *candidates, const ContactLayout *layout, double time,
-                       const double *positions, bool *has_changed) {
+                       const double *positions) {
   if (candidates->is_made || !is_kept(candidates, layout, time, positions))
-    return search_all(candidates, layout, time, positions, has_changed);
-  *has_changed = true;
+    return search_all(candidates, layout, time, positions);
   return copy_list(&candidates->kept.list, layout, &candidates->list);
 }
 
@@ -431,9 +416,8 @@ static double time_left(const ContactCandidates *candidates, const ContactLayout
 }
 
 Status contact_candidates_update(ContactCandidates *candidates, const ContactLayout *layout, double time,
-                                 const double *positions, const double *velocities, double step,
-                                 bool *has_changed) {
-  *has_changed = candidates->is_fresh = false;
+                                 const double *positions, const double *velocities, double step) {
+  candidates->is_fresh = false;
   measure(candidates, layout, time, positions);
   step = step > 0 ? step : NO_STEP;
   expect_motions(candidates, layout, time, velocities, step);
@@ -441,7 +425,7 @@ Status contact_candidates_update(ContactCandidates *candidates, const ContactLay
   if (!wants_search(candidates, layout)) return STATUS_OK;
 
   double start = clock_wall_s();
-  TRY(find_all(candidates, layout, time, positions, has_changed));
+  TRY(find_all(candidates, layout, time, positions));
   memcpy(candidates->reference, positions, 3 * (size_t)layout->mesh.position_count * sizeof(double));
   candidates->reference_time = time;
   candidates->is_made = candidates->is_fresh = true;

@@ -62,10 +62,9 @@ typedef struct ContactCandidates {
 Status contact_candidates_create(ContactCandidates *candidates, const ContactLayout *layout);
 void contact_candidates_destroy(ContactCandidates *candidates);
 
-// Searches anew if the motion asks for it; `*has_changed`: the list differs from the one before.
+// Searches anew if the motion asks for it.
 Status contact_candidates_update(ContactCandidates *candidates, const ContactLayout *layout, double time,
-                                 const double *positions, const double *velocities, double step,
-                                 bool *has_changed);
+                                 const double *positions, const double *velocities, double step);
 
 // Sets which interfaces are not searched from now on (interface_count); NULL: all are. Their pairs leave the
 // list; when an interface is searched again the list must be made anew.

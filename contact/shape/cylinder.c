@@ -127,13 +127,13 @@ static void add_segment(Region *region, Vec3 p, double turn) {
   }
 }
 
-// An arc by that turn from the last corner, in pieces; `closes`: its end is a corner already.
-static void add_arc(Region *region, double turn, bool closes) {
+// An arc by that turn from the last corner, in pieces; its end is a corner already, or will be.
+static void add_arc(Region *region, double turn) {
   int pieces = (int)ceil(fabs(turn) / LONGEST_ARC);
   for (int k = 0; k < pieces && region->count > 0; k++) {
     Vec3 p = region->corners[region->count - 1];
     add_segment(region, p, turn / pieces);
-    if (k + 1 < pieces || !closes) push(region, vec3_add(p, along_arc(region, p, turn / pieces)));
+    if (k + 1 < pieces) push(region, vec3_add(p, along_arc(region, p, turn / pieces)));
   }
 }
 
@@ -201,16 +201,14 @@ static void walk(Region *region) {
     Vec3 begin = vec3_add(p, vec3_scale(part[0], vec3_sub(q, p)));
     bool meets = part[0] == 0 && last_edge == i - 1 && i > 0;
     if (last_edge >= 0 && !meets && polygon->normal.z != 0)
-      add_arc(region, turn_between(region, region->corners[region->count - 1], begin, false), true);
+      add_arc(region, turn_between(region, region->corners[region->count - 1], begin, false));
     if (first_edge < 0) first_edge = i;
     push(region, begin), push(region, vec3_add(p, vec3_scale(part[1], vec3_sub(q, p))));
     last_edge = i;
   }
   if (last_edge >= 0 && polygon->normal.z != 0)
-    add_arc(
-        region,
-        turn_between(region, region->corners[region->count - 1], region->corners[0], first_edge == last_edge),
-        true);
+    add_arc(region, turn_between(region, region->corners[region->count - 1], region->corners[0],
+                                 first_edge == last_edge));
 }
 
 static void walk_circle(Region *region) {
@@ -218,7 +216,7 @@ static void walk_circle(Region *region) {
   Vec3 start = {region->centre[0] + sqrt(region->square), region->centre[1], 0};
   start.z = o.z - (n.x * (start.x - o.x) + n.y * (start.y - o.y)) / n.z;
   push(region, start);
-  add_arc(region, n.z > 0 ? 2 * M_PI : -2 * M_PI, true);
+  add_arc(region, n.z > 0 ? 2 * M_PI : -2 * M_PI);
 }
 
 static void add_region(Half *half, const Polygon *polygon, bool is_end) {

@@ -201,7 +201,7 @@ Status fem_varied_derive_law(FemVaried *varied, const FemParameter *parameter, c
   law->by = constants[parameter->kind];
   law->row = parameter->row;
   *derived = (FemVariedLaw){.system = system, .law = law};
-  Status status = contact_system_update(system, state->time, state->positions, state->velocities, 0, NULL);
+  Status status = contact_system_update(system, state->time, state->positions, state->velocities, 0);
   if (!status) status = contact_evaluate(system, 0, state->time, state->positions, &derived->evaluation);
   *law = kept;
   return status;

@@ -118,15 +118,15 @@ static inline void find_twist(const FemSvd3 *svd, int i, int j, double twist[9])
       twist[3 * r + c] = svd->U[3 * r + i] * svd->V[3 * c + j] - svd->U[3 * r + j] * svd->V[3 * c + i];
 }
 
-// dP += scale · ∂R/∂F, as below.
-static void add_rotation_derivative(const double F[9], double scale, double dP[81]) {
+// dP += ∂R/∂F, as below.
+static void add_rotation_derivative(const double F[9], double dP[81]) {
   static const int pairs[3][2] = {{0, 1}, {1, 2}, {0, 2}};
   FemSvd3 svd;
   fem_svd3_factor(&svd, F);
   for (int k = 0; k < 3; k++) {
     double twist[9], sum = svd.sigma[pairs[k][0]] + svd.sigma[pairs[k][1]];
     find_twist(&svd, pairs[k][0], pairs[k][1], twist);
-    double weight = scale / fmax(sum, FEM_MATERIAL_SMALLEST_SUM);
+    double weight = 1 / fmax(sum, FEM_MATERIAL_SMALLEST_SUM);
     for (int r = 0; r < 9; r++)
       for (int c = 0; c < 9; c++) dP[9 * r + c] += weight * twist[r] * twist[c];
   }
@@ -306,7 +306,7 @@ void fem_material_volume_curvature(FemMaterialLaw law, const double F[9], double
   case FEM_MATERIAL_LINEAR:
     return;
   case FEM_MATERIAL_COROTATIONAL:
-    add_rotation_derivative(F, 1, curvature);
+    add_rotation_derivative(F, curvature);
     return;
   case FEM_MATERIAL_STVK:
     for (int r = 0; r < 9; r++) curvature[10 * r] = 1;

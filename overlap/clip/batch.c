@@ -105,11 +105,11 @@ static Status answer_group(Work *work, int first) {
   return STATUS_OK;
 }
 
-static Status answer_range(const OverlapClipLanes *lanes, const OverlapBatch *batch, int begin, int end) {
+static Status answer_all(const OverlapClipLanes *lanes, const OverlapBatch *batch) {
   Work work = {.lanes = lanes, .batch = batch};
-  int i = begin;
-  for (; i + lanes->width <= end; i += lanes->width) TRY(answer_group(&work, i));
-  for (; i < end; i++) TRY(enqueue(&work, i));
+  int i = 0;
+  for (; i + lanes->width <= batch->pair_count; i += lanes->width) TRY(answer_group(&work, i));
+  for (; i < batch->pair_count; i++) TRY(enqueue(&work, i));
   while (work.queue.count > 0)
     TRY(answer_queue(&work, work.queue.count < lanes->width ? work.queue.count : lanes->width));
   return STATUS_OK;
@@ -123,7 +123,7 @@ enum { PORTION = 512, SMALL_PORTION = 128, MANY = 16 * PORTION, WORTH_THREADS = 
 static Status eval_portion(const void *self, const OverlapBatch *portion, int first) {
   Status status = STATUS_OK;
   if (self && !portion->hessian)
-    status = answer_range(self, portion, 0, portion->pair_count);
+    status = answer_all(self, portion);
   else
     for (int i = 0; i < portion->pair_count && !status; i++) status = ask_carefully(portion, i);
   return status ? status_prefix(status, "clipping pairs %d to %d", first, first + portion->pair_count - 1)
@@ -137,7 +137,7 @@ static Status eval(const OverlapClipLanes *lanes, const OverlapBatch *batch) {
 
 static Status eval_one(const OverlapClipLanes *lanes, const double pair[24], const OverlapAnswer *answer) {
   OverlapBatch batch = overlap_ops_single(pair, answer);
-  return lanes && !batch.hessian ? answer_range(lanes, &batch, 0, 1) : ask_carefully(&batch, 0);
+  return lanes && !batch.hessian ? answer_all(lanes, &batch) : ask_carefully(&batch, 0);
 }
 
 static Status eval_batch(const void *self, const OverlapBatch *batch) {

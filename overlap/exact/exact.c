@@ -68,7 +68,7 @@ static void find_boundary(Boundary *boundary, const ExactPair *pair, ExactArena 
       overlap_exact_polygon_cut(&polygon, pair, t, k);
       boundary->parts[t][k] = overlap_exact_polygon_measure(&polygon, arena, with_moments);
       if (polygon.count < 3) continue;
-      if (!boundary->has_area) overlap_exact_polygon_lift(&polygon, arena, 0, boundary->apex);
+      if (!boundary->has_area) overlap_exact_polygon_lift(&polygon, arena, boundary->apex);
       boundary->has_area = true;
       if (coincides(pair, t, k)) halve(&boundary->parts[t][k]);
     }

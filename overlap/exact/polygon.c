@@ -224,9 +224,8 @@ ExactMoments overlap_exact_polygon_measure(const ExactPolygon *polygon, ExactAre
   return moments;
 }
 
-void overlap_exact_polygon_lift(const ExactPolygon *polygon, ExactArena *arena, int t,
-                                long double height[2][4]) {
-  const ExactCorner *corner = &polygon->corners[t];
+void overlap_exact_polygon_lift(const ExactPolygon *polygon, ExactArena *arena, long double height[2][4]) {
+  const ExactCorner *corner = &polygon->corners[0];
   const ExactTet *tets = polygon->pair->tets;
   const int own = polygon->own, other = 1 - own;
   mp_limb_t *mark = arena->next;

@@ -49,8 +49,8 @@ void overlap_exact_polygon_cut(ExactPolygon *polygon, const ExactPair *pair, int
 // All terms are non-negative integer quotients: relative error of a few 2^-62. Without moments those stay 0.
 ExactMoments overlap_exact_polygon_measure(const ExactPolygon *polygon, ExactArena *arena, bool with_moments);
 
-// How high corner t lies over the planes, as α of pair.h: height[own or other][plane], all ≥ 0 [unit³].
-void overlap_exact_polygon_lift(const ExactPolygon *polygon, ExactArena *arena, int t,
-                                long double height[2][4]);
+// How high the first corner lies over the planes, as α of pair.h: height[own or other][plane], all ≥ 0
+// [unit³].
+void overlap_exact_polygon_lift(const ExactPolygon *polygon, ExactArena *arena, long double height[2][4]);
 
 #endif

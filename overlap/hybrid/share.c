@@ -85,7 +85,7 @@ static void bend_logs(const OverlapHybridSigns *signs, const Step steps[FACTORS]
     double lambda[HALF];
     if (factors[1 + t] == 0) continue;
     overlap_simplex_volume(signs->pair + HALF * t, lambda);
-    overlap_simplex_add_outer(lambda, 0, factors[1 + t], SIZE, hessian + (SIZE + 1) * HALF * t);
+    overlap_simplex_add_outer(lambda, 0, factors[1 + t], hessian + (SIZE + 1) * HALF * t);
   }
 }
 

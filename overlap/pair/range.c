@@ -166,8 +166,7 @@ static void add_curvature(const double pair[24], const Weights *weights, double 
   for (int t = 0; t < 2; t++) {
     double by_volume = others(weights, 1 + t, 1 + t) * weights->of[1 + t].slope;
     if (by_volume != 0)
-      overlap_simplex_add_outer(weights->slope[1 + t] + 12 * t, 0, -by_volume, SIZE,
-                                hessian + (SIZE + 1) * 12 * t);
+      overlap_simplex_add_outer(weights->slope[1 + t] + 12 * t, 0, -by_volume, hessian + (SIZE + 1) * 12 * t);
   }
 }
 

@@ -23,12 +23,12 @@ static inline double overlap_simplex_volume(const double tet[12], double lambda[
   return fabs(six) / 6;
 }
 
-// hessian (rows of `stride`) += parallel · λ_kr λ_lc + crossed · λ_kc λ_lr
+// The 12 × 12 block at `hessian`, of a pair's (24, 24), += parallel · λ_kr λ_lc + crossed · λ_kc λ_lr
 static inline void overlap_simplex_add_outer(const double lambda[12], double parallel, double crossed,
-                                             int stride, double *hessian) {
+                                             double *hessian) {
   for (int i = 0; i < 12; i++)
     for (int j = 0; j < 12; j++)
-      hessian[i * stride + j] +=
+      hessian[24 * i + j] +=
           parallel * lambda[i] * lambda[j] + crossed * lambda[i - i % 3 + j % 3] * lambda[j - j % 3 + i % 3];
 }
 

@@ -365,7 +365,7 @@ static void chain_outputs(Chain *chain, const Slot *slot, int o, const float *ra
 static void chain_factor(Chain *chain, const Slot *slot, const double pair[SIZE], int o) {
   double lambda[SIZE] = {0}, hessian[SQUARE] = {0}, factor = slot->normalised[o].factor;
   overlap_simplex_volume(pair + HALF * o, lambda);
-  overlap_simplex_add_outer(lambda, factor, -factor, SIZE, hessian);
+  overlap_simplex_add_outer(lambda, factor, -factor, hessian);
   for (int i = 0; i < HALF; i++) lambda[i] *= factor;
   keep_slope(chain, OVERLAP_TPN_FACTOR + o, lambda, o);
   add_curvature(chain, slot->partials[OVERLAP_TPN_FACTOR + o], hessian, o);
@@ -374,7 +374,7 @@ static void chain_factor(Chain *chain, const Slot *slot, const double pair[SIZE]
 static void chain_size(Chain *chain, const Slot *slot, const double pair[SIZE], int t) {
   double lambda[HALF], hessian[SQUARE] = {0}, volume = slot->inputs.of[OVERLAP_TPN_SIZE + t];
   overlap_simplex_volume(pair + HALF * t, lambda);
-  overlap_simplex_add_outer(lambda, volume, -volume, SIZE, hessian + (SIZE + 1) * HALF * t);
+  overlap_simplex_add_outer(lambda, volume, -volume, hessian + (SIZE + 1) * HALF * t);
   size_slope(slot, pair, t, meet(chain, OVERLAP_TPN_SIZE + t));
   add_curvature(chain, slot->partials[OVERLAP_TPN_SIZE + t], hessian, false);
 }

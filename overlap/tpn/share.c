@@ -25,6 +25,6 @@ void overlap_tpn_share_bend(const double pair[24], double closed, const double c
       hessian[SIZE * i + j] = scale * closed_hessian[SIZE * i + j] + closed_gradient[i] * slope[j] +
                               slope[i] * closed_gradient[j];
   for (int t = 0; t < 2; t++)
-    overlap_simplex_add_outer(lambda + HALF * t, closed * inverse[t], closed * inverse[t], SIZE,
+    overlap_simplex_add_outer(lambda + HALF * t, closed * inverse[t], closed * inverse[t],
                               hessian + (SIZE + 1) * HALF * t);
 }

@@ -21,7 +21,7 @@ typedef struct Fixture {
 // Makes the system of def(blocks) and its first list.
 static void start(Fixture *f, const ContactSystemDef *def) {
   ck_assert_ok(contact_system_create(&f->system, def));
-  ck_assert_ok(contact_system_update(f->system, 0, f->blocks.x, f->still, 0.01, NULL));
+  ck_assert_ok(contact_system_update(f->system, 0, f->blocks.x, f->still, 0.01));
 }
 
 // Blocks are added to an empty fixture; systems borrow from it, so that it stays where it is.
@@ -328,7 +328,7 @@ END_TEST
 START_TEST(bodies_apart_have_no_energy_and_no_force) {
   Fixture *f = pressed_system(CONTACT_POTENTIAL_NODAL, false);
   blocks_shift(&f->blocks, f->blocks.x, 1, (double[]){0, 0, 5});
-  ck_assert_ok(contact_system_update(f->system, 0, f->blocks.x, f->still, 0.01, NULL));
+  ck_assert_ok(contact_system_update(f->system, 0, f->blocks.x, f->still, 0.01));
   double *force = forces_at(f, f->blocks.x);
   const ContactEvaluation *evaluation = evaluated_at(f->system, 0, f->blocks.x);
   ck_assert_near(evaluation->energy, 0, 0);
@@ -436,7 +436,7 @@ static Status whole_life(const Fixture *f) {
   ContactAudit audit;
   const ContactEvaluation *evaluation;
   Status status = contact_system_create(&system, &def);
-  if (!status) status = contact_system_update(system, 0, f->blocks.x, f->still, 0.01, NULL);
+  if (!status) status = contact_system_update(system, 0, f->blocks.x, f->still, 0.01);
   if (!status) status = contact_evaluate(system, 0, 0, f->blocks.x, &evaluation);
   if (!status) status = contact_system_stiffness(system, evaluation, &sink);
   if (!status) status = contact_system_couple(system, evaluation, 0.1, NULL, ignore_clique);

@@ -41,7 +41,7 @@ static void destroy(Scene *scene) {
 
 // The present positions are the next accepted state.
 static void accept(Scene *scene) {
-  ck_assert_ok(contact_system_update(scene->system, 0, scene->blocks.x, scene->still, 0.01, NULL));
+  ck_assert_ok(contact_system_update(scene->system, 0, scene->blocks.x, scene->still, 0.01));
   ck_assert_ok(
       contact_passage_look(&scene->passage, scene->system, evaluated_at(scene->system, 0, scene->blocks.x)));
   scene->passed += scene->passage.passed;

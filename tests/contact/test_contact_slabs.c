@@ -113,7 +113,7 @@ static Worst slide(ContactPotential potential, double ratio, double depth, bool 
   Worst worst = {0};
   for (int k = 0; k < SLIDES; k++) {
     double scattered, net;
-    ck_assert_ok(contact_system_update(slabs.system, 0, slabs.blocks.x, slabs.velocities, 0.01, NULL));
+    ck_assert_ok(contact_system_update(slabs.system, 0, slabs.blocks.x, slabs.velocities, 0.01));
     const ContactEvaluation *evaluation = evaluated_at(slabs.system, 0, slabs.blocks.x);
     ck_assert_int_gt(contact_evaluation_active_count(evaluation), 100);
     for (int body = 0; body < 2; body++) {
@@ -181,7 +181,7 @@ START_TEST(models_agree_where_meshes_are_aligned) {
   OverlapModel exact;
   ContactAudit audit;
   ck_assert_ok(overlap_models_create(&exact, "exact"));
-  ck_assert_ok(contact_system_update(slabs.system, 0, slabs.blocks.x, slabs.velocities, 0.01, NULL));
+  ck_assert_ok(contact_system_update(slabs.system, 0, slabs.blocks.x, slabs.velocities, 0.01));
   ck_assert_ok(contact_system_audit(slabs.system, 0, slabs.blocks.x, &slabs.model, &exact, &audit));
   ck_assert_int_gt(audit.pair_count, 1000);
   ck_assert(contact_audit_error(audit.volume) <= 1e-12);

@@ -46,7 +46,7 @@ static void start(Fixture *f, ContactPotential potential) {
 }
 
 static void update(Fixture *f) {
-  ck_assert_ok(contact_system_update(f->system, 0, f->x, f->still, 0.01, NULL));
+  ck_assert_ok(contact_system_update(f->system, 0, f->x, f->still, 0.01));
 }
 
 static void destroy(Fixture *f) {

@@ -30,7 +30,7 @@ static Fixture *block_on(ContactShape shape) {
   ContactSystemDef def = blocks_def(&f->blocks, f->rest, &f->model);
   def.shapes = &f->shape, def.shape_count = 1, def.margin = 0.5;
   ck_assert_ok(contact_system_create(&f->system, &def));
-  ck_assert_ok(contact_system_update(f->system, 0, f->blocks.x, f->still, 0.01, NULL));
+  ck_assert_ok(contact_system_update(f->system, 0, f->blocks.x, f->still, 0.01));
   return f;
 }
 

@@ -89,7 +89,7 @@ static void destroy(Scene *scene) {
 }
 
 static void move(const Scene *scene) {
-  ck_assert_ok(contact_system_update(scene->system, 0, scene->x, scene->still, 0.01, NULL));
+  ck_assert_ok(contact_system_update(scene->system, 0, scene->x, scene->still, 0.01));
 }
 
 // Curved boxes, the upper one pressed into the lower one, both bent: every node moves by itself.

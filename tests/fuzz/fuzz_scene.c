@@ -23,7 +23,7 @@ static void check_refusal(Status status) {
 // The definition with all its defaults as JSON; owned.
 static char *print(const FemSceneDef *scene) {
   Record *record = record_new();
-  FUZZ_CLAIM(record && app_scene_write_resolved(scene, record, "scene") == STATUS_OK, "%s", status_message());
+  FUZZ_CLAIM(record && app_scene_write_resolved(scene, record) == STATUS_OK, "%s", status_message());
   char *text = record_text_of(record_find(record, "scene"));
   record_destroy(record);
   return text;

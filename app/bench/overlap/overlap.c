@@ -397,7 +397,7 @@ static Status run(const Options *options) {
 }
 
 static int run_command(int argument_count, char **arguments) {
-  Options options = {.common = app_bench_options_default(9), .batches = {{4096}, 1}};
+  Options options = {.common = app_bench_options_default(), .batches = {{4096}, 1}};
   options.common.takes_thread_list = true;
   options.model_count = list_models(options.models);
   for (int i = 0; i < APP_BENCH_SET_COUNT; i++) options.wants_set[i] = true;

@@ -75,7 +75,7 @@ static void move_to(Walk *walk, const double at[3]) {
 static Status evaluate(Walker *walker, const Walk *walk, const double along[3], double step) {
   const AppUnseenMesh *mesh = walk->mesh;
   memset(walker->force, 0, 3 * (size_t)mesh->vertex_count * sizeof(double));
-  TRY(contact_system_update(walker->system, 0, walk->x, walk->velocity, 1, NULL));
+  TRY(contact_system_update(walker->system, 0, walk->x, walk->velocity, 1));
   TRY(contact_evaluate(walker->system, 0, 0, walk->x, &walker->evaluation));
   const ContactEvaluation *evaluation = walker->evaluation;
   contact_system_add_force(walker->system, evaluation, walker->force);

@@ -183,7 +183,7 @@ static Status create_again(void **self, void **old) {
 
 static Status renew(void *self, const FemState *state, double step) {
   Contact *contact = self;
-  return contact_system_update(contact->system, state->time, state->positions, state->velocities, step, NULL);
+  return contact_system_update(contact->system, state->time, state->positions, state->velocities, step);
 }
 
 static void forget(void *self) {

@@ -19,7 +19,7 @@ static const char *const full_json = TETLAP_SOURCE_DIR "/tests/data/scene/full.j
 // The scene as the resolved JSON; owned by the caller (free).
 static char *resolved(const FemSceneDef *scene) {
   Record *record = record_new();
-  ck_assert_ok(app_scene_write_resolved(scene, record, "scene"));
+  ck_assert_ok(app_scene_write_resolved(scene, record));
   char *text = NULL;
   size_t size;
   FILE *stream = open_memstream(&text, &size);
@@ -453,7 +453,7 @@ START_TEST(every_failed_allocation_is_reported) {
   for (status = STATUS_MEMORY, k = 1; status == STATUS_MEMORY; k++) {
     Record *record = record_new();
     memory_fail_at(k);
-    status = app_scene_write_resolved(&scene, record, "scene");
+    status = app_scene_write_resolved(&scene, record);
     memory_fail_at(0);
     record_destroy(record);
   }
