@@ -45,9 +45,6 @@ static const char NESTED[] = "grad V of a network is not 0 where one tetrahedron
 static const char LEARNED_APART[] = "V and the centroid are learned apart from each other: their forces are "
                                     "not quite the gradient of a potential";
 static const char LEARNED_VOLUME[] = "the error of the learned V";
-static const char CRUSHED[] =
-    "the soft ball meets the hard one at three times its own wave speed and is crushed onto it: its elements "
-    "invert";
 static const char ROUNDED[] =
     "a clearance of 5e-7 m is a rounding of single precision: contact comes and goes";
 static const char AUDIT[] = "tetlap compare --audit-only exact: force error";
@@ -62,7 +59,6 @@ static const char AUDIT[] = "tetlap compare --audit-only exact: force error";
   }
 
 static const AppStressLimit limits[] = {
-    {"two spheres", NULL, "energy gain", 0.004, CRUSHED, "trouble.energy, trouble.inverted"},
     {"spikes", NULL, "asymmetry in x", 0.09, TIPS, NULL},
     {"spikes", NULL, "asymmetry in y", 0.09, TIPS, NULL},
     {"spike and wedge", NULL, "asymmetry in x", 0.05, TIPS, NULL},
@@ -73,6 +69,8 @@ static const AppStressLimit limits[] = {
     {"vertex on vertex", LEARNED, "energy gain", 0.004, LEARNED_APART,
      "trouble.energy, history.csv: energy_gain"},
     {"spike*", LEARNED, "energy gain", 0.003, LEARNED_APART, "trouble.energy, history.csv: energy_gain"},
+    {"wedges, parallel", LEARNED, "energy gain", 0.0012, LEARNED_APART,
+     "trouble.energy, history.csv: energy_gain"},
     SLABS("flat slabs*", PAPERS, 0.7, 1.1, 1.1, PIECEWISE, AUDIT),
     SLABS("flat slabs*", INTEGRABLE, 0.7, 1.1, 1.1, ROUGH, AUDIT),
     {"spike*", NETWORKS, "asymmetry in x", 0.06, UNSYMMETRIC, AUDIT},
@@ -87,9 +85,9 @@ static const AppStressLimit limits[] = {
     {"*", INTEGRABLE, "energy gain", 1.7, NO_POTENTIAL, "trouble.energy, history.csv: energy_gain"},
     {"*", PAPERS, "energy gain", 1.5, LEAPING, "trouble.energy, history.csv: energy_gain"},
     {"*", PAPERS, "time reached", 4e-5, PIECEWISE, "newton_failures, restarts, beyond_range_pairs"},
-    {"two spheres", NULL, "change of angular momentum", 1.2e-5,
-     "BDF keeps linear momentum, not angular momentum, which is quadratic: it errs by the tolerance of "
-     "velocities",
+    {"two spheres", NULL, "change of angular momentum", 2.6e-5,
+     "BDF 2 keeps momentum, which is linear, but not angular momentum, which is quadratic: it errs by h², "
+     "measured as 0.006 to 0.010 tolerance^(2/3) from 1e-3 to 1e-7",
      "history.csv: angular_x, angular_y, angular_z"},
     {"nearly incompressible, 0.49", NULL, "error of the deflection", 0.15, COARSE, NULL},
     {"nearly incompressible, 0.499", NULL, "error of the deflection", 0.15, COARSE, NULL},

@@ -133,9 +133,10 @@
 // Held by test_verdict, test_accuracy; wedge takes back 335 steps instead of 240 with 0.25.
 #define FEM_CUT 0.2
 
-// Of the time in which a wave √(E/ρ) crosses the smallest mean edge: nothing moves in less, so no shorter
-// step is tried again. The first step of a start is FEM_CUT of it at least.
-// Held by test_result.
+// Of the time in which a wave √(E/ρ) crosses the smallest mean edge h: nothing moves in less, so no shorter
+// step is tried again. For energy that of √(h p′/ρ) counts, too, where contact has a pressure that rises by p′
+// per depth. The first step of a start is FEM_CUT of the former at least.
+// Held by test_result, test_impact.
 #define FEM_SHORTEST_RETRY 2.5e-3
 
 // ---- Newton's method.

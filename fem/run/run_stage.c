@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/run/run_stage.h"
 
+#include <float.h>
 #include <math.h>
 
+#include "contact/pressure/law.h"
+#include "fem/effect/contact/contact.h"
 #include "fem/model/limits.h"
 #include "fem/model/tolerance.h"
 #include "fem/run/check/choice.h"
@@ -11,6 +14,48 @@
 
 double fem_run_stage_resolved(const FemModel *model) {
   return FEM_SHORTEST_RETRY * model->edge / fem_model_fastest_wave(model);
+}
+
+// p′ of a law where it presses with that pressure, or at the depth `deepest` if it never does.
+static double slope_at(const ContactLaw *law, double pressure, double deepest) {
+  double low = 0, high = deepest;
+  for (int i = 0; i < DBL_MANT_DIG; i++) {
+    double middle = 0.5 * (low + high);
+    if (contact_law_at(law, middle).pressure < pressure)
+      low = middle;
+    else
+      high = middle;
+  }
+  return contact_law_at(law, high).slope;
+}
+
+// Of a contact as that of an element: its pressure over the strain of an edge [Pa].
+static double modulus_of(const FemModel *model, const ContactInterfaceDef *interface, double young) {
+  if (model->scene->contact.potential == CONTACT_POTENTIAL_NODAL) return interface->stiffness;
+  if (interface->law) return model->edge * slope_at(interface->law, young, model->edge);
+  return (interface->shape < 0 ? 2 : 1) * model->edge * interface->stiffness;
+}
+
+// The fastest speed with which such a contact throws an element of a party back [m/s].
+static double speed_of(const FemModel *model, const ContactInterfaceDef *interface, int party) {
+  double fastest = 0;
+  if (party >= model->body_count) return fastest;
+  const FemModelBody *body = &model->bodies[party];
+  for (int p = body->part_begin; p < body->part_end; p++) {
+    const FemMaterial *material = &model->parts[p].material;
+    fastest = fmax(fastest, sqrt(modulus_of(model, interface, material->young) / material->density));
+  }
+  return fastest;
+}
+
+double fem_run_stage_rebound(const FemModel *model, const ContactLayout *contact) {
+  double fastest = fem_model_fastest_wave(model);
+  for (int i = 0; i < contact->interface_count; i++) {
+    const ContactInterfaceDef *interface = &contact->interfaces[i];
+    fastest = fmax(fastest,
+                   fmax(speed_of(model, interface, interface->a), speed_of(model, interface, interface->b)));
+  }
+  return FEM_SHORTEST_RETRY * model->edge / fastest;
 }
 
 void fem_run_stage_scatter(FemRunState *run) {
@@ -23,6 +68,10 @@ Status fem_run_stage_begin(FemRunState *run, double step) {
   double next = fem_rest_next_change(run->rest);
   run->stage_end = fmin(fmin(scene->end, next), fem_numbering_next_release(model, run->time));
   if (run->system.numbering.count == 0) return STATUS_OK; // all sleep
+  void *contact = fem_system_effect(&run->system, &fem_effect_contact);
+  run->rebound = contact
+                     ? fem_run_stage_rebound(model, contact_system_layout(fem_effect_contact_system(contact)))
+                     : fem_run_stage_resolved(model);
   FemIntegratorDef def = {.displacement_tolerance = fem_model_position_tolerance(model),
                           .velocity_tolerance = fem_model_velocity_tolerance(model),
                           .speed_share = fem_model_speed_share(model),

@@ -8,6 +8,11 @@
 // A share of the time in which a wave crosses an element: no shorter step is tried again [s].
 double fem_run_stage_resolved(const FemModel *model);
 
+// The same of the time in which contact throws an element back, if that is shorter: no shorter step is tried
+// again for its energy [s]. A contact whose pressure rises by p′ per overlap has the modulus h p′ for an
+// element of the edge h, as a wave has E; p′ of a law where it presses with E.
+double fem_run_stage_rebound(const FemModel *model, const ContactLayout *contact);
+
 // The last accepted state, under trial.
 void fem_run_stage_scatter(FemRunState *run);
 

@@ -38,6 +38,7 @@ typedef struct FemRunState {
   double *halfway;       // displacements there, scratch     (unknown_count)
   int next_frame;
   double least_power;       // of the step that is proposed, dissipated at least; INFINITY: no doubt [W]
+  double rebound;           // no shorter step is tried again for its energy (fem/run/run_stage.h) [s]
   double next_step;         // to be tried; 0: the integrator's choice [s]
   FemStall stall;           // over all stages
   double stage_end;         // the next release of vertices, change for what sleeps, or the end [s]

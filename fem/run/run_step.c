@@ -102,6 +102,7 @@ static FemVerdict judge(const FemRunState *run, const Proposal *proposal) {
   FemFindings findings = {.length = fem_integrator_stats(run->integrator).last_step,
                           .shortest = fem_integrator_shortest_step(run->integrator),
                           .resolved = fem_run_stage_resolved(run->model),
+                          .rebound = run->rebound,
                           .is_evaluated = proposal->is_evaluated};
   if (!proposal->is_evaluated) return fem_verdict_of(&findings);
   findings.gains_energy = fem_audit_is_refused(&run->result->energy.bounds, &run->audit, &proposal->audit);

@@ -12,11 +12,15 @@ static FemCause cause_of(const FemFindings *findings) {
   return findings->reversed <= FEM_ENERGY_REVERSED ? FEM_CAUSE_NONE : FEM_CAUSE_REVERSAL;
 }
 
+// The shortest step that is tried for a cause [s].
+static double least_of(const FemFindings *findings, FemCause cause) {
+  if (cause == FEM_CAUSE_FORCES) return findings->shortest;
+  return fmax(findings->shortest, cause == FEM_CAUSE_ENERGY ? findings->rebound : findings->resolved);
+}
+
 FemVerdict fem_verdict_of(const FemFindings *findings) {
   const FemCause cause = cause_of(findings);
-  double least =
-             cause == FEM_CAUSE_FORCES ? findings->shortest : fmax(findings->shortest, findings->resolved),
-         step = fmax(FEM_CUT * findings->length, least);
+  double step = fmax(FEM_CUT * findings->length, least_of(findings, cause));
   if (cause == FEM_CAUSE_NONE || !(step < findings->length)) step = 0;
   bool may_stand = cause != FEM_CAUSE_FORCES;
   return (FemVerdict){.stands = may_stand && step == 0, .cause = cause, .step = step};

@@ -3,8 +3,10 @@
 // (fem/model/limits.h) is decided here, from what was found at the state that the step leads to.
 //
 // A step that does not stand is tried again from the last accepted state with FEM_CUT of its length. Steps in
-// which nothing moves are not tried: what they gain or miss is part of what is reported at the end. A step
-// whose forces cannot be evaluated never stands: it is cut down to the shortest step, and then the run fails.
+// which nothing moves are not tried: what they gain or miss is part of what is reported at the end. A stiff
+// contact may give energy in less time than a wave moves anything in. Momentum that such steps miss comes
+// back as the force falls, so for it they are not tried. A step whose forces cannot be evaluated never
+// stands: it is cut down to the shortest step, and then the run fails.
 #ifndef TETLAP_FEM_TIME_VERDICT_H
 #define TETLAP_FEM_TIME_VERDICT_H
 
@@ -21,7 +23,8 @@ typedef enum FemCause {
 typedef struct FemFindings {
   double length;   // of the step [s]
   double shortest; // step that the integrator may take [s]
-  double resolved; // in less nothing moves [s]
+  double resolved; // in less no wave moves anything [s]
+  double rebound;  // in less contact moves nothing either [s]
   bool is_evaluated, gains_energy, differs_from_motion;
   double reversed; // what friction gave to a slip that has reversed, as a share of the scene's energy
 } FemFindings;

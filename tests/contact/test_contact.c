@@ -152,19 +152,25 @@ START_TEST(stiffness_is_minus_the_derivative_of_the_forces) {
 }
 END_TEST
 
-START_TEST(two_bodies_keep_momentum_and_angular_momentum) {
-  Fixture *f = fixture_of(_i);
-  double *force = forces_at(f, f->blocks.x), sum[3] = {0}, torque[3] = {0}, on_a[3] = {0}, size = 0;
+// The forces on both bodies sum to nothing, and so do their moments about the origin. Returns Σ |f|.
+static double check_balance(const Fixture *f, const double *force) {
+  double sum[3] = {0}, torque[3] = {0}, size = 0;
   for (int v = 0; v < f->blocks.vertex_count; v++) {
     Vec3 on_v = vec3_at(force + 3 * v);
     vec3_accumulate(sum, on_v);
     vec3_accumulate(torque, vec3_cross(vec3_at(f->blocks.x + 3 * v), on_v));
-    if (v < f->blocks.bodies[0].vertex_end) vec3_accumulate(on_a, on_v);
     size += vec3_length(on_v);
   }
   ck_assert(size > 0);
   ck_assert_near(vec3_length(vec3_at(sum)), 0, 1e-13 * size);
   ck_assert_near(vec3_length(vec3_at(torque)), 0, NUDGE * size);
+  return size;
+}
+
+START_TEST(two_bodies_keep_momentum_and_angular_momentum) {
+  Fixture *f = fixture_of(_i);
+  double *force = forces_at(f, f->blocks.x), on_a[3] = {0}, size = check_balance(f, force);
+  for (int v = 0; v < f->blocks.bodies[0].vertex_end; v++) vec3_accumulate(on_a, vec3_at(force + 3 * v));
   const ContactEvaluation *evaluation = evaluated_at(f->system, 0, f->blocks.x);
   const ContactInterface *interfaces = evaluation->interfaces;
   ck_assert_int_eq(contact_system_layout(f->system)->interface_count, 1);
@@ -175,6 +181,37 @@ START_TEST(two_bodies_keep_momentum_and_angular_momentum) {
   ck_assert(on_a[2] < 0); // the lower body is pushed down
   const double *forces = evaluation->given_forces;
   for (int k = 0; k < 3 * f->blocks.vertex_count; k++) ck_assert_near(forces[k], force[k], 0);
+  free(force), destroy(f);
+}
+END_TEST
+
+// Six times the smallest signed volume of an element of the upper block at which contact pushes.
+static double smallest_det(const Fixture *f, const double *force) {
+  double smallest = INFINITY;
+  for (int t = f->blocks.bodies[1].tet_begin; t < f->blocks.bodies[1].tet_end; t++) {
+    const int *tet = f->blocks.tets[t];
+    Vec3 corners[4];
+    double pushed = 0;
+    for (int v = 0; v < 4; v++) {
+      corners[v] = vec3_at(f->blocks.x + 3 * tet[v]);
+      pushed += vec3_length(vec3_at(force + 3 * tet[v]));
+    }
+    Vec3 edges[3];
+    for (int k = 0; k < 3; k++) edges[k] = vec3_sub(corners[k + 1], corners[0]);
+    if (pushed > 0) smallest = fmin(smallest, vec3_dot(edges[0], vec3_cross(edges[1], edges[2])));
+  }
+  return smallest;
+}
+
+// The middle of the upper block's lower face is pulled up through its elements.
+START_TEST(elements_turned_inside_out_keep_momentum_and_angular_momentum) {
+  Fixture *f = fixture_of(_i);
+  enum { MIDDLE = 4 }; // of three by three
+  f->blocks.x[3 * (f->blocks.bodies[1].vertex_begin + MIDDLE) + 2] += 1.2;
+  ck_assert_ok(contact_system_update(f->system, 0, f->blocks.x, f->still, 0.01));
+  double *force = forces_at(f, f->blocks.x);
+  check_balance(f, force);
+  ck_assert_double_lt(smallest_det(f, force), 0);
   free(force), destroy(f);
 }
 END_TEST
@@ -466,6 +503,7 @@ int main(void) {
   tcase_add_loop_test(cases, forces_are_minus_the_gradient_of_the_energy, 0, 2 * all);
   tcase_add_loop_test(cases, stiffness_is_minus_the_derivative_of_the_forces, 0, 2);
   tcase_add_loop_test(cases, two_bodies_keep_momentum_and_angular_momentum, 0, 2 * all);
+  tcase_add_loop_test(cases, elements_turned_inside_out_keep_momentum_and_angular_momentum, 0, 2 * all);
   tcase_add_test(cases, covered_volumes_sum_to_the_overlap);
   tcase_add_loop_test(cases, a_tip_in_a_halfspace_is_as_by_hand, 0, all);
   tcase_add_test(cases, a_halfspace_moves_with_its_velocity);

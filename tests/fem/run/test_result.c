@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "fem/effect/contact/contact.h"
 #include "fem/run/run_stage.h"
 
 // The trouble of a run of a block in the air with these results.
@@ -41,10 +42,33 @@ START_TEST(nothing_moves_in_a_four_hundredth_of_an_elements_crossing) {
 }
 END_TEST
 
+// E = 1e6 Pa, ρ = 1000 kg/m³, against a half-space. A linear contact presses with c d; a law is taken where
+// it presses with E: p = 1e6 (d/1e-6 m)² at 1e-6 m, where p′ = 2e12 Pa/m.
+START_TEST(a_contact_throws_an_element_back_as_a_wave_of_its_modulus_would) {
+  const char *const contacts[] = {"contact={stiffness: 1e10}", "contact={stiffness: 1}",
+                                  "contact={law: {power: {pressure: 1e6, depth: 1e-6, exponent: 2}}}"};
+  const double slopes[] = {1e10, 0, 2e12}; // [Pa/m]
+  for (int k = 0; k < 3; k++) {
+    SceneRun run;
+    scene_open(&run, "drop", (const char *const[]){contacts[k], NULL});
+    FemSystem system;
+    ck_assert_ok(fem_system_create(&system, &run.model));
+    void *contact = fem_system_effect(&system, &fem_effect_contact);
+    const ContactLayout *layout = contact_system_layout(fem_effect_contact_system(contact));
+    double edge = run.model.edge, speed = sqrt(fmax(1e6, slopes[k] * edge) / 1000),
+           expected = edge / speed / 400;
+    ck_assert_near(fem_run_stage_rebound(&run.model, layout), expected, 1e-9 * expected);
+    fem_system_destroy(&system);
+    scene_close(&run);
+  }
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("result");
   tcase_add_test(cases, a_gap_of_momentum_of_a_thousandth_is_kept_and_more_is_trouble);
   tcase_add_test(cases, of_a_hundred_pairs_one_may_be_beyond_the_training);
   tcase_add_test(cases, nothing_moves_in_a_four_hundredth_of_an_elements_crossing);
+  tcase_add_test(cases, a_contact_throws_an_element_back_as_a_wave_of_its_modulus_would);
   return suite_run("result", cases, 20);
 }
