@@ -16,7 +16,8 @@ enum { BLOCK = 128, TILE = 256 };
 enum { ROWS = 512, COLUMNS = 16 };
 // Multiplications of a front that is worth being cut in a factorisation, and in a solution.
 static const double LARGE = 1e7, LONG = 1e5;
-// A solution by fewer numbers is over before another thread is awake.
+// A solution by fewer numbers is over before another thread is awake, and they stay near the processor: half
+// of the bytes take as long.
 static const size_t FEW_VALUES = 500000;
 
 // A factorisation while it goes on.
@@ -30,7 +31,8 @@ static Status no_memory(void) {
   return status_no_memory("the factor of the condensed system (try solver.linear: pcg)");
 }
 
-Status fem_front_factor_create(FemFrontFactor *factor, const FemFrontTree *tree, bool with_rough) {
+Status fem_front_factor_create(FemFrontFactor *factor, const FemFrontTree *tree, bool may_be_rough) {
+  const bool with_rough = may_be_rough && tree->value_count > FEW_VALUES;
   *factor = (FemFrontFactor){.tree = tree};
   factor->values = memory_zeroed(tree->value_count, sizeof *factor->values);
   factor->updates = memory_zeroed((size_t)tree->front_count, sizeof *factor->updates);
@@ -434,5 +436,5 @@ void fem_front_factor_solve(FemFrontFactor *factor, const double *b, double *x) 
 }
 
 void fem_front_factor_solve_roughly(FemFrontFactor *factor, const double *b, double *x) {
-  solve(factor, true, b, x);
+  solve(factor, factor->rough != NULL, b, x);
 }

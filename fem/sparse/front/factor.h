@@ -19,8 +19,8 @@ typedef struct FemFrontFactor {
   double *carried; // of the rows below of each front                          (tree->carried_count)
 } FemFrontFactor;
 
-// A zeroed factor can be destroyed.
-Status fem_front_factor_create(FemFrontFactor *factor, const FemFrontTree *tree, bool with_rough);
+// A zeroed factor can be destroyed. `may_be_rough`: a large one is kept in single precision, too.
+Status fem_front_factor_create(FemFrontFactor *factor, const FemFrontTree *tree, bool may_be_rough);
 void fem_front_factor_destroy(FemFrontFactor *factor);
 
 // From the values of the matrix whose places the tree has. STATUS_RETRY: not positive definite.
@@ -28,7 +28,8 @@ Status fem_front_factor_make(FemFrontFactor *factor, const double *values);
 
 // x = A⁻¹ b; they may be the same.
 void fem_front_factor_solve(FemFrontFactor *factor, const double *b, double *x);
-// The same by the factor in single precision, symmetric and positive definite like A⁻¹: a preconditioner.
+// The same by the factor in single precision, if there is one, symmetric and positive definite like A⁻¹: a
+// preconditioner.
 void fem_front_factor_solve_roughly(FemFrontFactor *factor, const double *b, double *x);
 
 #endif
