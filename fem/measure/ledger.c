@@ -233,10 +233,11 @@ Status fem_ledger_save(const FemLedger *ledger, double **values, size_t *count) 
 // Whether so many numbers, from `passages` on, can be entries of passages.
 static bool are_passages(const FemLedger *ledger, const double *passages, size_t count) {
   bool fits = count % CONTACT_PASSAGE_KEPT == 0;
-  const int tets = count > 0 ? contact_system_layout(contact_of(ledger))->def.tet_count : 0;
+  const ContactLayout *layout = count > 0 ? contact_system_layout(contact_of(ledger)) : NULL;
   for (size_t k = 0; k < count && fits; k += CONTACT_PASSAGE_KEPT)
     fits = passages[k] >= 0 && passages[k] < ledger->accuracy.count && passages[k + 1] >= 0 &&
-           passages[k + 1] < tets;
+           passages[k + 1] < layout->def.tet_count && passages[k + 6] >= -1 &&
+           passages[k + 6] < layout->mesh.cell_count;
   return fits;
 }
 
@@ -246,7 +247,7 @@ Status fem_ledger_load(FemLedger *ledger, const double *values, size_t count) {
     return status_fail(
         STATUS_INPUT,
         "the checkpoint holds %zu numbers of momentum, contacts and probes that do not fit this "
-        "scene, which has %zu and sixes of contacts",
+        "scene, which has %zu and eights of contacts",
         count, fixed);
   fem_momentum_load(&ledger->momentum, values);
   values += ledger->momentum.body_count * FEM_MOMENTUM_KEPT;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is accumulated over accepted states: the balance of momentum (momentum.h), elements that passed
-// through bodies (contact/passage.h), the error of contact (accuracy.h), the readings of probes (reading.h).
+// through bodies (contact/passage/passage.h), the error of contact (accuracy.h), the readings of probes (reading.h).
 // A step that is taken back changes none of it.
 #ifndef TETLAP_FEM_MEASURE_LEDGER_H
 #define TETLAP_FEM_MEASURE_LEDGER_H
 
-#include "contact/passage.h"
+#include "contact/passage/passage.h"
 #include "fem/measure/accuracy.h"
 #include "fem/measure/momentum.h"
 #include "fem/measure/reading.h"

@@ -29,7 +29,7 @@ typedef enum FemTroubleKind {
   FEM_TROUBLE_WRONG_WAY,
   FEM_TROUBLE_ENERGY, // the audited energy rose by more than a run may gain (fem/time/audit.h)
   FEM_TROUBLE_PASSED, // an element left another body on the side opposite to where it came in
-                      // (contact/passage.h)
+                      // (contact/passage/passage.h)
 } FemTroubleKind;
 enum { FEM_TROUBLE_KIND_COUNT = 5 };
 

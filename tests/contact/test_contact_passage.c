@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "contact/passage.h"
+#include "contact/passage/passage.h"
 #include "contact/surface/middle.h"
 #include "overlap/models.h"
 
@@ -14,6 +14,7 @@ typedef struct Scene {
   double *rest, *still;
   ContactShape shape;
   int shape_count;
+  double margin; // 0: the default
   OverlapModel model;
   ContactSystem *system;
   ContactPassage passage;
@@ -27,6 +28,7 @@ static void start(Scene *scene) {
   ck_assert_ok(overlap_models_create(&scene->model, "clip"));
   ContactSystemDef def = blocks_def(&scene->blocks, scene->rest, &scene->model);
   def.potential = CONTACT_POTENTIAL_FIELD;
+  def.margin = scene->margin;
   def.shapes = &scene->shape, def.shape_count = scene->shape_count;
   ck_assert_ok(contact_system_create(&scene->system, &def));
 }
@@ -96,6 +98,78 @@ START_TEST(what_enters_by_a_third_and_comes_back_has_not) {
     move(&scene, 15, (const double[]){0, 0, 0.3 * UNITS[u]});
     ck_assert_int_eq(scene.passed, 0);
     ck_assert_int_eq(scene.most_turned, 0);
+    destroy(&scene);
+  }
+}
+END_TEST
+
+// Two plates of one body with another plate in the gap between them, which is too narrow by a fifth.
+static void start_plate_between(Scene *scene) {
+  *scene = (Scene){.shape_count = 0};
+  Blocks *blocks = &scene->blocks;
+  blocks_add(blocks, &(BlockDef){.cell = {1, 1, 0.3}, .cells = {4, 4, 1}});
+  blocks_add(blocks, &(BlockDef){.corner = {0, 0, 0.54}, .cell = {1, 1, 0.3}, .cells = {4, 4, 1}});
+  blocks->bodies[0].vertex_end = blocks->vertex_count;
+  blocks->bodies[0].tet_end = blocks->tet_count;
+  blocks->body_count = 1;
+  blocks_add(blocks, &(BlockDef){.corner = {0.71, 0.63, 0.27}, .cell = {0.8, 0.8, 0.3}, .cells = {3, 3, 1}});
+  start(scene);
+}
+
+// Pressed from both sides, now more by one and now by the other.
+START_TEST(what_lies_between_two_layers_has_not_passed_either) {
+  Scene scene;
+  start_plate_between(&scene);
+  for (int i = 0; i < 3; i++) {
+    move(&scene, 4, (const double[]){0, 0, 0.02});
+    move(&scene, 8, (const double[]){0.1, 0, -0.04});
+    move(&scene, 4, (const double[]){0, 0.1, 0.02});
+  }
+  ck_assert_int_gt(scene.passage.now.count, 2 * 54 - 36);
+  ck_assert_int_eq(scene.passed, 0);
+  ck_assert_int_eq(scene.most_turned, 0);
+  move(&scene, 30, (const double[]){0, 0, 0.7}); // now it does pass, one of them
+  ck_assert_int_gt(scene.passed, 0);
+  destroy(&scene);
+}
+END_TEST
+
+// Past edges of less and of more than a right angle, in steps that meet no edge, and only then inwards.
+START_TEST(what_goes_round_a_rim_has_not_passed) {
+  Scene scene = {.shape_count = 0};
+  blocks_add(&scene.blocks, &(BlockDef){.cell = {0.25, 0.25, 0.15}, .cells = {4, 4, 2}});
+  for (int v = 0; v < scene.blocks.vertex_count; v++) {
+    double *x = scene.blocks.x + 3 * v;
+    x[0] = 0.5 + (x[0] - 0.5) * (1 + 0.5 * (x[2] - 0.15));
+  }
+  blocks_add(&scene.blocks,
+             &(BlockDef){.corner = {0.95, 0.4, 0.31}, .cell = {0.2, 0.2, 0.2}, .cells = {1, 1, 1}});
+  start(&scene);
+  const double ways[][3] = {{0, 0, -0.02}, {0.06, 0, -0.23}, {-0.15, 0, -0.25}};
+  for (int k = 0; k < 3; k++) {
+    move(&scene, 1, ways[k]);
+    ck_assert_int_gt(scene.passage.now.count, 0);
+  }
+  move(&scene, 5, (const double[]){-0.3, 0, 0.1});
+  ck_assert_int_eq(scene.most_turned, 0);
+  move(&scene, 5, (const double[]){0, 0, -0.3});
+  ck_assert_int_eq(scene.passed, 0);
+  destroy(&scene);
+}
+END_TEST
+
+// Beyond the cells that it has met, in a step of 1.2: as long as contact's lists of 1.5 allow, not of 0.5.
+START_TEST(what_slides_far_in_a_step_is_still_known) {
+  for (int k = 0; k < 2; k++) {
+    Scene scene = {.margin = k == 0 ? 1.5 : 0.5};
+    blocks_add(&scene.blocks, &(BlockDef){.cell = {0.15, 0.15, 0.15}, .cells = {20, 8, 2}});
+    blocks_add(&scene.blocks,
+               &(BlockDef){.corner = {0.21, 0.27, 0.31}, .cell = {0.4, 0.4, 0.4}, .cells = {1, 1, 1}});
+    start(&scene);
+    move(&scene, 4, (const double[]){0, 0, -0.05});
+    ck_assert_int_gt(scene.passage.now.count, 0);
+    move(&scene, 1, (const double[]){1.2, 0, -0.5});
+    ck_assert(k == 0 ? scene.most_turned > 0 : scene.most_turned == 0);
     destroy(&scene);
   }
 }
@@ -197,6 +271,9 @@ int main(void) {
   TCase *cases = tcase_create("contact passage");
   tcase_add_test(cases, what_crosses_a_plate_has_passed_in_any_unit);
   tcase_add_test(cases, what_enters_by_a_third_and_comes_back_has_not);
+  tcase_add_test(cases, what_lies_between_two_layers_has_not_passed_either);
+  tcase_add_test(cases, what_goes_round_a_rim_has_not_passed);
+  tcase_add_test(cases, what_slides_far_in_a_step_is_still_known);
   tcase_add_test(cases, what_touches_by_rounding_has_no_direction);
   tcase_add_test(cases, the_middle_is_half_of_the_thickness_at_that_place);
   tcase_add_test(cases, the_middle_of_a_wedge_is_near_at_its_thin_end);

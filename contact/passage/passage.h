@@ -11,11 +11,21 @@
 // `nodal` g is the direction of ∂V_ij/∂x, and w V_ij (contact/volume/volume.h). The element keeps the
 // direction in which it came in. The kept direction follows h from one accepted state to the next while |h| >
 // ½ and h turns by less than a right angle: so it does where an element slides round a drum or over an edge,
-// or turns together with B. Where h points against the kept direction, the element has gone beyond the middle
-// of B and is pushed out on the other side: it is called turned. An element that leaves B while it is turned
-// has passed through; one that comes back is no longer turned.
+// or turns together with B. Near the surface it follows however far h turns, as over a sharp ridge: only an
+// element that has been deep inside can come to the other side by passing through. Where h points against the
+// kept direction, the element has gone beyond the middle of B and is pushed out on the other side: it is
+// called turned. An element that leaves B while it is turned has passed through; one that comes back is no
+// longer turned.
 //
-// Whether an element is turned is judged by two shares, so the unit of length does not matter:
+// Where B has several layers, or a slot, the element meets parts of it (contact/passage/meetings.h) that
+// press it from opposite sides, now one more and now the other. So h is that of a part, and the element keeps
+// one direction for each. A part of the next accepted state is the one before where it has the cell that the
+// element met most of, or neighbours of it, or, after a fast slide, lies at rest no farther from that than
+// the margin of contact's lists, which bounds the step. Of parts that become one the direction stays that
+// fits best.
+//
+// Whether an element is deep inside, as one must be to become turned, is judged by two shares, so the unit of
+// length does not matter:
 //
 //   reach    the largest depth, over the depth of B's middle at that place (contact/surface/middle.h): at
 //            least a tenth, since cells along an edge of B's mesh can have any slope;
@@ -24,18 +34,20 @@
 //
 // Below a millionth the centroid and the depth of an overlap are those of rounding: such a pair counts for
 // nothing, and such an element keeps no direction.
-#ifndef TETLAP_CONTACT_PASSAGE_H
-#define TETLAP_CONTACT_PASSAGE_H
+#ifndef TETLAP_CONTACT_PASSAGE_PASSAGE_H
+#define TETLAP_CONTACT_PASSAGE_PASSAGE_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "contact/passage/meetings.h"
 #include "contact/system.h"
 
-// An element in another's body.
+// An element in a part of another's body.
 typedef struct ContactPassageEntry {
   int interface, tet;
-  bool is_turned;
+  int cell; // of the part, the one that it meets most of; −1: a shape
+  bool is_turned, is_deep;
   double direction[3];   // in which it came in; 0: not known yet
   double reach, covered; // scratch: the shares, now
 } ContactPassageEntry;
@@ -46,21 +58,12 @@ typedef struct ContactPassageList {
   size_t capacity;
 } ContactPassageList;
 
-// What an element of the patches meets.
-typedef struct ContactPassageMeeting {
-  double slope[3], size; // Σ w g, Σ w |g|
-  double reach;          // largest depth as a share of that of the middle there; without a depth 0
-  double volume, other;  // Σ V_ij, Σ V_j of the cells that it meets [m³]
-  double covered;        // share of the lesser volume
-} ContactPassageMeeting;
-
 typedef struct ContactPassage {
-  ContactPassageList now, next;    // at the last accepted state, and at the one that is evaluated
-  int passed;                      // elements that have left turned, from `now` to `next`
-  ContactPassageEntry first;       // of them
-  ContactPassageMeeting *meetings; // scratch                             (elements of the patches)
-  size_t meeting_capacity;
-  double *middles; // of each cell: the depth of the middle there [m]; `field` only
+  ContactPassageList now, next; // at the last accepted state, and at the one that is evaluated
+  int passed;                   // elements that have left turned, from `now` to `next`
+  ContactPassageEntry first;    // of them
+  ContactMeetings meetings;     // of `next`
+  double *middles;              // of each cell: the depth of the middle there [m]; `field` only
 } ContactPassage;
 
 void contact_passage_destroy(ContactPassage *passage); // also of a zeroed one, which is a beginning
@@ -79,7 +82,7 @@ int contact_passage_turned(const ContactPassage *passage, ContactPassageEntry *f
 int contact_passage_inside(const ContactPassage *passage, ContactPassageEntry *first);
 
 // What a checkpoint keeps: so many numbers, a row an entry of `now`.
-enum { CONTACT_PASSAGE_KEPT = 6 };
+enum { CONTACT_PASSAGE_KEPT = 8 };
 void contact_passage_save(const ContactPassage *passage, double *values);
 Status contact_passage_load(ContactPassage *passage, int count, const double *values);
 
