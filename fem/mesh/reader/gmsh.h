@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading and meshing by gmsh, the only place where its API is used.
+// Reading and meshing by gmsh; with fem/mesh/reader/gmsh_model.c the only place where its API is used.
 //
 // gmsh keeps its state in globals, sets the number of OpenMP threads, runs for minutes without a way to stop
 // it, and falls over some damaged files. So this is not called directly but given to fem_mesh_worker_run,

@@ -2,6 +2,8 @@
 #include "fem/mesh/reader/gmsh_library.h"
 
 #include <dlfcn.h>
+#include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
 static Status find_function(void *handle, const char *name, void *function) {
@@ -23,4 +25,21 @@ Status fem_mesh_gmsh_library_load(FemMeshGmshLibrary *library) {
   FEM_GMSH_FUNCTIONS(FIND)
 #undef FIND
   return STATUS_OK;
+}
+
+Status fem_mesh_gmsh_library_fail(const FemMeshGmshLibrary *gmsh, const char *doing) {
+  char **lines = NULL, reason[512] = "no reason given; a count in the file may be wrong";
+  size_t count = 0;
+  int error = 0;
+  gmsh->LoggerGet(&lines, &count, &error);
+  bool is_found = false;
+  for (size_t k = 0; !error && k < count; k++) {
+    if (!is_found && strncmp(lines[k], "Error: ", 7) == 0) {
+      snprintf(reason, sizeof reason, "%s", lines[k] + 7);
+      is_found = true;
+    }
+    gmsh->Free(lines[k]);
+  }
+  gmsh->Free(lines);
+  return status_fail(STATUS_INPUT, "gmsh could not %s: %s", doing, reason);
 }

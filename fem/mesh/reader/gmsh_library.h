@@ -58,5 +58,8 @@ static inline void fem_mesh_gmsh_library_start(const FemMeshGmshLibrary *library
 // The library stays loaded until the process ends. STATUS_IO: it is not installed, or is another than the one
 // whose header tetlap was compiled with; the message names it.
 Status fem_mesh_gmsh_library_load(FemMeshGmshLibrary *library);
+// STATUS_INPUT, "gmsh could not DOING", with what it logged as its first error; later ones only repeat that
+// it failed.
+Status fem_mesh_gmsh_library_fail(const FemMeshGmshLibrary *gmsh, const char *doing);
 
 #endif
