@@ -74,6 +74,13 @@ typedef struct FemEffect {
   void *self;
 } FemEffect;
 
+// Where there are ranks: effects of which each rank computes a part, those that each computes whole, or both.
+typedef enum FemEffectPart { FEM_EFFECT_ALL, FEM_EFFECT_DIVIDED, FEM_EFFECT_WHOLE } FemEffectPart;
+
+static inline bool fem_effect_is_of(const FemEffect *effect, FemEffectPart part) {
+  return part == FEM_EFFECT_ALL || effect->ops->is_divided == (part == FEM_EFFECT_DIVIDED);
+}
+
 // All effects there are.
 const FemEffectOps *const *fem_effect_list(int *count);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The mechanical system of a run: model + the effects that its scene calls for. Evaluates forces, the
-// condensed or split Jacobian and energies at any state; owns the matrix pattern and the last accepted state.
+// The mechanical system of a run: model + the effects that its scene calls for. Evaluates forces and the
+// condensed or split Jacobian at any state (energies: fem/effect/system_energy.h); owns the matrix pattern
+// and the last accepted state.
 #ifndef TETLAP_FEM_EFFECT_SYSTEM_H
 #define TETLAP_FEM_EFFECT_SYSTEM_H
 
@@ -89,10 +90,6 @@ Status fem_system_renew(FemSystem *system, const FemState *state);
 // Accepts a state: effects renew their lists, and histories go on.
 Status fem_system_accept(FemSystem *system, const FemState *state, double next_step);
 
-// Energies and powers; evaluates the forces where driven vertices need them.
-Status fem_system_energy(FemSystem *system, const FemState *state, FemEnergy *energy);
-// Of the damping of materials alone [W]. Over ranks the sum.
-Status fem_system_damping_power(FemSystem *system, const FemState *state, double *power);
 // How far a step from `time` may go, at most to `farthest`, so that no function of time is
 // missed (signal.h).
 double fem_system_horizon(const FemSystem *system, const FemForesight *foresight, double time,

@@ -87,6 +87,11 @@ static inline bool fem_model_is_released(const FemModelDriver *driver, double ti
   return driver->def->release > 0 && driver->def->release <= time;
 }
 
+// Whether the driver moves anything, where those up to that time have been released.
+static inline bool fem_model_is_moved(const FemModelDriver *driver, double released) {
+  return !driver->is_fixed && !fem_model_is_released(driver, released);
+}
+
 // Of an element; of an obstacle the first law.
 static inline FemMaterialLaw fem_model_law(const FemModel *model, int tet) {
   int part = model->tet_part[tet];

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
+#include "fem/effect/system_energy.h"
 #include "fem/measure/stress.h"
 #include "fem/output/columns.h"
 #include "fem/output/lines.h"

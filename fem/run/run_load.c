@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "fem/effect/system_energy.h"
 #include "fem/model/limits.h"
 #include "fem/model/tolerance.h"
 #include "fem/run/run_frames.h"

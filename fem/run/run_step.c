@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/log.h"
+#include "fem/effect/system_energy.h"
 #include "fem/run/result/run_clock.h"
 #include "fem/run/run_frames.h"
 #include "fem/run/run_stage.h"

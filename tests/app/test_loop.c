@@ -13,6 +13,7 @@
 #include "contact/search/layout.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/effect/elements/packs.h"
+#include "fem/effect/system_energy.h"
 #include "fem/model/compliance/compliance.h"
 #include "fem/run/run_state.h"
 #include "folder.h"

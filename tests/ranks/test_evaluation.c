@@ -10,6 +10,7 @@
 #include "case.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/effect/system.h"
+#include "fem/effect/system_energy.h"
 #include "fem/model/build.h"
 
 static const double SAME = 1e-12; // of the largest entry: sums of some hundred terms in another order

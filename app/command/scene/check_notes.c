@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "fem/effect/effect.h"
+#include "fem/effect/system_energy.h"
 #include "fem/measure/thickness.h"
 #include "fem/model/compliance/compliance.h"
 #include "fem/run/check/choice.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/run/rest/hold.h"
 
+#include "fem/effect/system_energy.h"
+
 // Stops a body; returns the kinetic energy that its unknowns had.
 static double stop_body(const FemSystem *system, const FemModelBody *body, double *velocities) {
   double energy = 0;

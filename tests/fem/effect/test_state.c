@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "fem/effect/system.h"
+#include "fem/effect/system_energy.h"
 #include "scene.h"
 #include "suite.h"
 

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "fem/effect/elements/volume.h"
+#include "fem/effect/system_energy.h"
 #include "reference/material.h"
 
 static const char *const laws[] = {"linear", "corotational", "stvk", "neo_hookean"};
