@@ -219,6 +219,7 @@ static Status print_json(const Answer *answer) {
   if (found->steps.count > 0) record_integer(record, "steps", found->steps.count - 1);
   if (found->steps.count > 0) record_integer(record, "stick_slip_switches", found->gradient.switches);
   if (found->steps.count > 0) record_integer(record, "replay_bytes", (long long)found->steps.bytes);
+  if (found->steps.count > 0) record_number(record, "replay_s", found->gradient.replay_s);
   record_number(record, "force_residual", found->gradient.unbalanced);
   Record *of = record_child(record, "of");
   for (int g = 0; g < words->of_count; g++) record_goal(answer, g, record_child(of, words->of[g]));

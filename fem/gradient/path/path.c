@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "fem/gradient/path/start.h"
 #include "fem/model/compliance/compliance.h"
@@ -426,7 +427,9 @@ static Status add_start(Sweep *sweep, int p, FemGradient *gradient) {
 
 static Status replay_and_return(Sweep *sweep, FemGradient *gradient) {
   FemReplay *replay = &sweep->replay;
+  double began = clock_cpu_s();
   TRY(fem_replay_go(replay));
+  gradient->replay_s = clock_cpu_s() - began;
   gradient->unbalanced = replay->worst;
   gradient->switches = replay->switches;
   int first = has_friction(sweep) ? 0 : 1;
