@@ -32,27 +32,33 @@ static bool is_taken(const AppGradientAnswer *answer, const FemRunProgress *prog
   return is_due && progress->time > answer->gradient.time;
 }
 
-static double megabytes_of(const AppGradientAnswer *answer) {
-  static const double MEGABYTE = 1e6;
-  return (double)answer->steps.bytes / MEGABYTE;
-}
+static const double MEGABYTE = 1e6;
 
-// A replay that would keep too much is refused as soon as the run shows it.
-static Status add_step(AppGradientAnswer *answer, const FemRunProgress *progress) {
-  TRY(fem_replay_steps_add(&answer->steps, progress->system));
-  double kept = megabytes_of(answer), most = answer->most_megabytes;
+// Refuses a replay that cannot keep so little, else says what it keeps.
+static Status tell(const AppGradientAnswer *answer) {
+  static const double KILOBYTE = 1e3;
+  FemReplayPlan plan = fem_replay_steps_plan(&answer->steps);
   int count = answer->steps.count - 1;
-  if (!(most > 0 && kept > most)) return STATUS_OK;
-  return status_fail(
-      STATUS_INPUT,
-      "--memory: up to t = %.6g s, %d step%s, a replay keeps %.4g MB, more than %.4g MB; allow more, "
-      "take goals at an earlier time (--at), or longer steps (time.tolerance, output.frames)",
-      progress->time, count, count == 1 ? "" : "s", kept, most);
+  const char *steps = count == 1 ? "step" : "steps";
+  double kept = (double)plan.bytes / MEGABYTE, least = ceil((double)plan.least / KILOBYTE) / KILOBYTE;
+  if (plan.bytes == 0)
+    return status_fail(
+        STATUS_INPUT,
+        "--memory: a replay of %d %s keeps %.10g MB at least, more than %.10g MB; allow that, take goals "
+        "at an earlier time (--at), or longer steps (time.tolerance, output.frames)",
+        count, steps, least, (double)answer->steps.most / MEGABYTE);
+  if (plan.segment_count > 1)
+    log_info("a replay of %d steps keeps %.4g MB, in %d segments of %d steps, all but the last done twice",
+             count, kept, plan.segment_count, plan.length);
+  else
+    log_info("a replay of %d %s keeps %.4g MB", count, steps, kept);
+  return STATUS_OK;
 }
 
 static Status at_step(void *observer, const FemRunProgress *progress) {
   AppGradientAnswer *answer = observer;
-  if (fem_gradient_is_path(progress->system->model)) return add_step(answer, progress);
+  if (fem_gradient_is_path(progress->system->model))
+    return fem_replay_steps_add(&answer->steps, progress->system);
   if (!is_taken(answer, progress)) return STATUS_OK;
   return fem_gradient_find(&answer->gradient, progress->system, &answer->def);
 }
@@ -63,13 +69,11 @@ Status app_gradient_answer(AppGradientAnswer *answer, const FemModel *model, con
   FemRunOptions run = {.observe = at_step, .observer = answer, .stop = stop};
   *answer = (AppGradientAnswer){0};
   TRY(prepare(answer, model, words));
-  answer->most_megabytes = words->most_megabytes;
+  answer->steps.most = (size_t)(words->most_megabytes * MEGABYTE);
   Status status = app_gradient_run(model, &answer->def, &run, &result);
-  if (!status && fem_gradient_is_path(model)) {
-    int count = answer->steps.count - 1;
-    log_info("a replay of %d step%s keeps %.4g MB", count, count == 1 ? "" : "s", megabytes_of(answer));
+  if (!status && fem_gradient_is_path(model)) status = tell(answer);
+  if (!status && fem_gradient_is_path(model))
     status = fem_path_differentiate(&answer->gradient, model, &answer->def, &answer->steps);
-  }
   if (!status && !answer->gradient.values)
     status = status_fail(STATUS_SOLVER, "the run ended before a goal was taken: no gradient");
   fem_run_result_destroy(&result);

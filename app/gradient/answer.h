@@ -24,7 +24,6 @@ typedef struct AppGradientAnswer {
   FemParameter parameters[APP_GRADIENT_MOST];
   FemGradientDef def;
   FemReplaySteps steps; // of a path
-  double most_megabytes;
   FemGradient gradient;
 } AppGradientAnswer;
 

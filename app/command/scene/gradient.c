@@ -38,9 +38,8 @@ static const AppOption option_table[] = {
     {"at", 0, "TIME", "Take quantities at this time [s] that name none (default: the run's end)", 1,
      CLI_POSITIVE, CLI_TO(Options, words.at)},
     {"memory", 0, "MB",
-     "What the replay of a motion, or of a scene with friction, may keep; the run ends where it would be "
-     "more "
-     "(default: what there is)",
+     "What the replay of a motion, or of a scene with friction, may keep; where it were more, segments are "
+     "done twice (default: what there is)",
      1, CLI_POSITIVE, CLI_TO(Options, words.most_megabytes)},
     {"weights", 'w', "FILE",
      "Write dg/dw by the weights of contact.overlap's network, a geo, as a weights file of the same shape; "
@@ -218,7 +217,9 @@ static Status print_json(const Answer *answer) {
   record_text(record, "contact_stiffness", app_gradient_stiffness(answer->model, words));
   if (found->steps.count > 0) record_integer(record, "steps", found->steps.count - 1);
   if (found->steps.count > 0) record_integer(record, "stick_slip_switches", found->gradient.switches);
-  if (found->steps.count > 0) record_integer(record, "replay_bytes", (long long)found->steps.bytes);
+  FemReplayPlan plan = fem_replay_steps_plan(&found->steps);
+  if (found->steps.count > 0) record_integer(record, "replay_bytes", (long long)plan.bytes);
+  if (found->steps.count > 0) record_integer(record, "replay_segments", plan.segment_count);
   if (found->steps.count > 0) record_number(record, "replay_s", found->gradient.replay_s);
   record_number(record, "force_residual", found->gradient.unbalanced);
   Record *of = record_child(record, "of");

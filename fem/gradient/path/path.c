@@ -253,7 +253,7 @@ static void resist(const Sweep *sweep, const FemParameter *parameter, FemChange 
   int k = sweep->step;
   FemReplayFormula formula = fem_replay_formula(replay, k);
   size_t n = (size_t)replay->n;
-  const double *v = replay->v + n * (size_t)k;
+  const double *v = fem_replay_v(replay, k);
   for (size_t i = 0; i < n; i++) {
     int dof = replay->system.numbering.dof_of_unknown[i];
     double rate = formula.c * v[i] + formula.near * v[i - n] + (k > 1 ? formula.far * v[i - 2 * n] : 0);
@@ -390,6 +390,7 @@ static Status go_back_with(Sweep *sweep, FemGradient *gradient) {
 static Status go_back_to(Sweep *sweep, int k, FemGradient *gradient) {
   sweep->step = k;
   TRY(fem_replay_return(&sweep->replay, k));
+  if (fem_replay_is_anew(&sweep->replay, k)) sweep->factorised = 0;
   TRY(fem_tangent_find(&sweep->tangent, &sweep->replay.state));
   return go_back_with(sweep, gradient);
 }

@@ -20,47 +20,6 @@ static const double SWIFT = 0.25, ROUNDED = 1e-12;
 // for a difference of forces, as a share of the mean edge.
 static const double INEXACT = 1e-4, WAY = 1e-7;
 
-// Points before a step that lead to where it is looked for: with three it takes a tenth more iterations.
-enum { LEAD = 5 };
-
-// ---- Steps.
-
-// Of a step: u, v and histories; of a static scene, where it is looked for.
-static size_t bytes_of(const FemSystem *system) {
-  size_t numbers = (system->model->scene->is_static ? 3 : 2) * (size_t)system->numbering.count;
-  for (int e = 0; e < system->effect_count; e++) numbers += system->accepted.histories[e].count;
-  return numbers * sizeof(double);
-}
-
-static Status add(FemReplaySteps *steps, const FemSystem *system, const FemState *state) {
-  size_t n = (size_t)system->numbering.count, count = (size_t)steps->count;
-  bool is_static = system->model->scene->is_static;
-  bool fits = memory_reserve((void **)&steps->times, &steps->time_capacity, count + 1, sizeof(double));
-  if (is_static)
-    fits = fits && memory_reserve((void **)&steps->u, &steps->capacity, (count + 1) * n, sizeof(double));
-  if (!fits) return status_no_memory("the steps of a run");
-  for (size_t i = 0; i < n && is_static; i++) {
-    int dof = system->numbering.dof_of_unknown[i];
-    steps->u[count * n + i] = state ? state->positions[dof] - system->model->rest[dof] : 0;
-  }
-  steps->unknown_count = (int)n;
-  steps->times[steps->count++] = state ? state->time : 0;
-  steps->bytes += bytes_of(system);
-  return STATUS_OK;
-}
-
-Status fem_replay_steps_add(FemReplaySteps *steps, const FemSystem *system) {
-  if (steps->count == 0) TRY(add(steps, system, NULL));
-  bool is_new = system->accepted.time > steps->times[steps->count - 1];
-  return is_new ? add(steps, system, &system->accepted) : STATUS_OK;
-}
-
-void fem_replay_steps_destroy(FemReplaySteps *steps) {
-  memory_free(steps->times);
-  memory_free(steps->u);
-  *steps = (FemReplaySteps){0};
-}
-
 FemReplayFormula fem_replay_formula(const FemReplay *replay, int k) {
   const FemReplaySteps *steps = replay->steps;
   if (k < 1 || k >= steps->count || replay->system.model->scene->is_static)
@@ -71,6 +30,14 @@ FemReplayFormula fem_replay_formula(const FemReplay *replay, int k) {
   double ratio = h / (t[-1] - t[-2]);
   return (FemReplayFormula){(1 + 2 * ratio) / (1 + ratio) / h, -(1 + ratio) / h,
                             ratio * ratio / (1 + ratio) / h};
+}
+
+double *fem_replay_u(const FemReplay *replay, int k) {
+  return replay->u + (size_t)replay->n * (size_t)(k - replay->first);
+}
+
+double *fem_replay_v(const FemReplay *replay, int k) {
+  return replay->v + (size_t)replay->n * (size_t)(k - replay->first);
 }
 
 double fem_replay_mass(const FemReplay *replay, int unknown) {
@@ -121,14 +88,20 @@ Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemRepl
   *replay = (FemReplay){.steps = steps};
   TRY(fem_system_create(&replay->system, model));
   replay->n = replay->system.numbering.count;
-  size_t n = (size_t)replay->n, count = (size_t)steps->count;
-  replay->u = memory_zeroed(count * n, sizeof(double));
-  replay->v = memory_zeroed(count * n, sizeof(double));
+  replay->plan = fem_replay_steps_plan(steps);
+  if (replay->plan.bytes == 0)
+    return status_fail(STATUS_MEMORY, "the replay of a run needs %zu bytes at least", replay->plan.least);
+  size_t n = (size_t)replay->n, count = (size_t)steps->count, segments = (size_t)replay->plan.segment_count;
+  size_t rows = (size_t)replay->plan.length + (segments > 1 ? FEM_REPLAY_LEAD : 1);
+  replay->u = memory_zeroed(rows * n, sizeof(double));
+  replay->v = memory_zeroed(rows * n, sizeof(double));
+  replay->saved = memory_zeroed(segments > 1 ? segments * 2 * FEM_REPLAY_LEAD * n : 1, sizeof(double));
   replay->force = memory_zeroed(n, sizeof(double));
   replay->step = memory_zeroed(n, sizeof(double));
   replay->weights = memory_zeroed(n, sizeof(double));
   replay->histories = memory_zeroed(count * FEM_MAX_EFFECTS, sizeof *replay->histories);
-  if (!replay->u || !replay->v || !replay->force || !replay->step || !replay->weights || !replay->histories)
+  if (!replay->u || !replay->v || !replay->saved || !replay->force || !replay->step || !replay->weights ||
+      !replay->histories)
     return status_no_memory("the replay of a run");
   for (size_t i = 0; i < n; i++) replay->weights[i] = 1;
   if (steps->u && steps->unknown_count != replay->n)
@@ -152,8 +125,9 @@ void fem_replay_destroy(FemReplay *replay) {
   fem_state_destroy(&replay->before);
   fem_state_destroy(&replay->state);
   fem_system_destroy(&replay->system);
-  void *arrays[] = {replay->u,     replay->v,         replay->force, replay->step, replay->ahead,
-                    replay->aside, replay->histories, replay->slips, replay->rate, replay->weights};
+  void *arrays[] = {replay->u,     replay->saved, replay->v,      replay->force,
+                    replay->step,  replay->ahead, replay->aside,  replay->histories,
+                    replay->slips, replay->rate,  replay->weights};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
   *replay = (FemReplay){0};
 }
@@ -172,7 +146,7 @@ static Status find_forces(FemReplay *replay, double time, const double *u, const
 static Status find_residual(FemReplay *replay, int k, double *left) {
   FemReplayFormula formula = fem_replay_formula(replay, k);
   size_t n = (size_t)replay->n;
-  double *u = replay->u + n * (size_t)k, *v = replay->v + n * (size_t)k;
+  double *u = fem_replay_u(replay, k), *v = fem_replay_v(replay, k);
   for (size_t i = 0; i < n; i++)
     v[i] = formula.c * u[i] + formula.near * u[i - n] + (k > 1 ? formula.far * u[i - 2 * n] : 0);
   TRY(find_forces(replay, replay->steps->times[k], u, v, replay->force));
@@ -186,7 +160,7 @@ static Status find_residual(FemReplay *replay, int k, double *left) {
 
 // What forces and changes of momentum within a step are measured by [N].
 static double scale_of(const FemReplay *replay, int k, double c) {
-  const double *v = replay->v + (size_t)replay->n * (size_t)k;
+  const double *v = fem_replay_v(replay, k);
   double scale = fem_equilibrium_largest(replay->system.forces, 3 * replay->system.model->vertex_count);
   for (int i = 0; i < replay->n; i++) scale = fmax(scale, fem_replay_mass(replay, i) * c * fabs(v[i]));
   return scale;
@@ -243,7 +217,7 @@ static Status find_step(FemReplay *replay, double time, const double *u, const d
 static Status balance(FemReplay *replay, int k, FemReplayWay way) {
   double c = fem_replay_formula(replay, k).c, time = replay->steps->times[k], left;
   size_t n = (size_t)replay->n;
-  double *u = replay->u + n * (size_t)k, *v = replay->v + n * (size_t)k;
+  double *u = fem_replay_u(replay, k), *v = fem_replay_v(replay, k);
   fem_mixing_forget(&replay->mixing);
   TRY(find_residual(replay, k, &left));
   for (int i = 0; i < MAX_ITERATIONS && left > 0; i++) {
@@ -295,11 +269,11 @@ static Status keep_histories(FemReplay *replay, int k) {
 
 // Where points before it lead to; at the beginning, the velocity.
 static double lead(const double *t, const double *u, size_t n, int k, const double *v) {
-  if (k < LEAD) return u[-(ptrdiff_t)n] + (t[k] - t[k - 1]) * v[-(ptrdiff_t)n];
+  if (k < FEM_REPLAY_LEAD) return u[-(ptrdiff_t)n] + (t[k] - t[k - 1]) * v[-(ptrdiff_t)n];
   double sum = 0;
-  for (int i = 1; i <= LEAD; i++) {
+  for (int i = 1; i <= FEM_REPLAY_LEAD; i++) {
     double share = 1;
-    for (int j = 1; j <= LEAD; j++)
+    for (int j = 1; j <= FEM_REPLAY_LEAD; j++)
       if (j != i) share *= (t[k] - t[k - j]) / (t[k - i] - t[k - j]);
     sum += share * u[-(ptrdiff_t)(n * (size_t)i)];
   }
@@ -309,7 +283,7 @@ static double lead(const double *t, const double *u, size_t n, int k, const doub
 static void guess(FemReplay *replay, int k) {
   size_t n = (size_t)replay->n;
   const double *t = replay->steps->times, *found = replay->steps->u;
-  double *u = replay->u + n * (size_t)k, *v = replay->v + n * (size_t)k;
+  double *u = fem_replay_u(replay, k), *v = fem_replay_v(replay, k);
   if (found) memcpy(u, found + n * (size_t)k, n * sizeof *u);
   for (size_t i = 0; i < n && !found; i++) u[i] = lead(t, u + i, n, k, v + i);
 }
@@ -325,13 +299,11 @@ static Status find(FemReplay *replay, int k) {
   return balance(replay, k, (FemReplayWay){.is_fresh = true, .is_corrected = !replay->is_near});
 }
 
-static Status step(FemReplay *replay, int k) {
+static Status step(FemReplay *replay, int k, bool is_again) {
   const double *t = replay->steps->times;
-  size_t n = (size_t)replay->n;
   TRY(find(replay, k));
-  fem_system_scatter(&replay->system, t[k], replay->u + n * (size_t)k, replay->v + n * (size_t)k,
-                     &replay->state);
-  TRY(count_switches(replay));
+  fem_system_scatter(&replay->system, t[k], fem_replay_u(replay, k), fem_replay_v(replay, k), &replay->state);
+  if (!is_again) TRY(count_switches(replay));
   TRY(fem_system_accept(&replay->system, &replay->state, k + 1 < replay->steps->count ? t[k + 1] - t[k] : 0));
   return keep_histories(replay, k);
 }
@@ -344,37 +316,105 @@ static Status begin(FemReplay *replay) {
   return fem_system_begin(&replay->system, &replay->state, 0);
 }
 
-Status fem_replay_go(FemReplay *replay) {
-  TRY(begin(replay));
-  fem_system_gather(&replay->system, &replay->system.accepted, replay->u, replay->v);
-  TRY(keep_histories(replay, 0));
-  for (int k = 1; k < replay->steps->count; k++) TRY(fem_replay_end(replay, k, step(replay, k)));
-  return STATUS_OK;
-}
-
 // The accepted state of step k, its histories borrowed.
 static void recall(FemReplay *replay, int k, FemState *state) {
-  size_t n = (size_t)replay->n;
-  fem_system_scatter(&replay->system, replay->steps->times[k], replay->u + n * (size_t)k,
-                     replay->v + n * (size_t)k, state);
+  fem_system_scatter(&replay->system, replay->steps->times[k], fem_replay_u(replay, k),
+                     fem_replay_v(replay, k), state);
   memcpy(state->histories, replay->histories + k * FEM_MAX_EFFECTS, sizeof state->histories);
   state->version = fem_state_new_version();
   state->last = state;
 }
 
+bool fem_replay_is_anew(const FemReplay *replay, int k) {
+  return k % FEM_REPLAY_BLOCK == 0 && k + 1 < replay->steps->count;
+}
+
+// From step k on nothing depends on what was before, but for the numbers that are kept.
+static Status begin_anew(FemReplay *replay, int k) {
+  FemSystem *system = &replay->system;
+  const double *t = replay->steps->times + k;
+  recall(replay, k, &replay->before);
+  TRY(fem_system_begin(system, &replay->before, t[1] - t[0]));
+  for (int e = 0; e < system->effect_count; e++) {
+    const FemEffectHistory *history = &replay->before.histories[e];
+    if (history->count > 0) TRY(fem_system_remember(system, e, history->values, history->count));
+  }
+  replay->state.last = &system->accepted;
+  replay->has_factor = false;
+  return STATUS_OK;
+}
+
+// ---- Segments.
+
+// Copies the last rows before a segment, or `back`, there.
+static void save(FemReplay *replay, int segment, bool back) {
+  int begin = segment * replay->plan.length, from = segment > 0 ? begin + 1 - FEM_REPLAY_LEAD : 0;
+  size_t n = (size_t)replay->n, count = n * (size_t)(begin + 1 - from);
+  double *saved = replay->saved + 2 * FEM_REPLAY_LEAD * n * (size_t)segment;
+  if (back) replay->first = from;
+  for (int i = 0; i < 2; i++) {
+    double *kept = saved + (size_t)i * FEM_REPLAY_LEAD * n;
+    double *row = i == 0 ? fem_replay_u(replay, from) : fem_replay_v(replay, from);
+    memcpy(back ? row : kept, back ? kept : row, count * sizeof *row);
+  }
+}
+
+// The segment comes to stand there; nothing stays of the other but where segments begin.
+static void turn_to(FemReplay *replay, int segment) {
+  int begin = replay->segment * replay->plan.length;
+  for (int k = begin + 1; k < replay->steps->count && k < begin + replay->plan.length; k++)
+    for (int e = 0; e < FEM_MAX_EFFECTS; e++)
+      fem_effect_history_destroy(&replay->histories[k * FEM_MAX_EFFECTS + e]);
+  replay->segment = segment;
+  save(replay, segment, true);
+}
+
+// From where it begins.
+static Status go_through(FemReplay *replay, bool is_again) {
+  int begin = replay->segment * replay->plan.length, last = replay->steps->count - 1;
+  TRY(begin_anew(replay, begin));
+  for (int k = begin + 1; k <= last && k <= begin + replay->plan.length; k++) {
+    TRY(fem_replay_end(replay, k, step(replay, k, is_again)));
+    if (k < begin + replay->plan.length && fem_replay_is_anew(replay, k)) TRY(begin_anew(replay, k));
+  }
+  return STATUS_OK;
+}
+
+Status fem_replay_go(FemReplay *replay) {
+  TRY(begin(replay));
+  fem_system_gather(&replay->system, &replay->system.accepted, replay->u, replay->v);
+  TRY(keep_histories(replay, 0));
+  if (replay->plan.segment_count > 1) save(replay, 0, false);
+  TRY(go_through(replay, false));
+  for (int segment = 1; segment < replay->plan.segment_count; segment++) {
+    save(replay, segment, false);
+    turn_to(replay, segment);
+    TRY(go_through(replay, false));
+  }
+  return STATUS_OK;
+}
+
+// Step k and the one before.
+static Status fetch(FemReplay *replay, int k) {
+  int segment = k > 0 ? (k - 1) / replay->plan.length : 0;
+  if (segment == replay->segment) return STATUS_OK;
+  turn_to(replay, segment);
+  return go_through(replay, true);
+}
+
 Status fem_replay_return(FemReplay *replay, int k) {
-  size_t place = (size_t)replay->n * (size_t)k;
   double time = replay->steps->times[k];
+  TRY(fetch(replay, k));
+  if (fem_replay_is_anew(replay, k)) TRY(begin_anew(replay, k));
   recall(replay, k > 0 ? k - 1 : 0, &replay->before);
   replay->state.last = &replay->before;
-  TRY(fem_equilibrium_renew(&replay->equilibrium, time, replay->u + place));
-  fem_system_scatter(&replay->system, time, replay->u + place, replay->v + place, &replay->state);
+  TRY(fem_equilibrium_renew(&replay->equilibrium, time, fem_replay_u(replay, k)));
+  fem_system_scatter(&replay->system, time, fem_replay_u(replay, k), fem_replay_v(replay, k), &replay->state);
   return STATUS_OK;
 }
 
 Status fem_replay_factorise(FemReplay *replay, int k) {
-  double c = fem_replay_formula(replay, k).c, time = replay->steps->times[k];
-  size_t place = (size_t)replay->n * (size_t)k;
-  return fem_equilibrium_factorise_moving(&replay->equilibrium, time, replay->u + place, replay->v + place, c,
-                                          c * c);
+  double c = fem_replay_formula(replay, k).c;
+  return fem_equilibrium_factorise_moving(&replay->equilibrium, replay->steps->times[k],
+                                          fem_replay_u(replay, k), fem_replay_v(replay, k), c, c * c);
 }

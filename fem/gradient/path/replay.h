@@ -12,23 +12,10 @@
 #ifndef TETLAP_FEM_GRADIENT_PATH_REPLAY_H
 #define TETLAP_FEM_GRADIENT_PATH_REPLAY_H
 
-#include "fem/effect/system.h"
+#include "fem/gradient/path/replay_steps.h"
 #include "fem/sparse/krylov.h"
 #include "fem/statics/equilibrium.h"
 #include "fem/time/newton/mixing.h"
-
-// The ends of a run's steps, from 0 on.
-typedef struct FemReplaySteps {
-  double *times; // [s], owned                                              (count)
-  double *u;     // of a static scene, where each step's solution is looked for first; owned  (count, n)
-  int count, unknown_count;
-  size_t bytes; // that a replay of them keeps: positions, velocities and histories of all, and u
-  size_t time_capacity, capacity;
-} FemReplaySteps;
-
-// The system's accepted state, if it is a new one. STATUS_MEMORY.
-Status fem_replay_steps_add(FemReplaySteps *steps, const FemSystem *system);
-void fem_replay_steps_destroy(FemReplaySteps *steps); // also of a zeroed one
 
 // ẏ_n = c y_n + near y_{n−1} + far y_{n−2}
 typedef struct FemReplayFormula {
@@ -42,16 +29,19 @@ typedef struct FemReplay {
   FemEquilibrium equilibrium;
   FemKrylov krylov; // where there is friction or damping
   FemMixing mixing;
-  double *weights;              // of its norm, 1                            (n)
-  bool has_factor;              // which serves the next step, too
-  void *stick;                  // friction's effect, borrowed; NULL: none
-  bool is_near;                 // the matrix, to J: no friction, damping, following pressure
-  int n;                        // unknowns
-  double *u, *v;                // of all steps                              (count, n)
+  double *weights; // of its norm, 1                            (n)
+  bool has_factor; // which serves the next step, too
+  void *stick;     // friction's effect, borrowed; NULL: none
+  bool is_near;    // the matrix, to J: no friction, damping, following pressure
+  int n;           // unknowns
+  FemReplayPlan plan;
+  int segment, first;           // which is there; the step of the first row
+  double *u, *v;                // of its steps, and of some before           (rows, n)
+  double *saved;                // those before each segment        (segments, 2, FEM_REPLAY_LEAD, n)
   double *force, *step;         // scratch                                   (n)
   double *ahead, *aside;        // scratch, where the matrix is not exact    (n)
   double *rate;                 // the same, velocities                      (n)
-  FemEffectHistory *histories;  // of all steps                              (count, FEM_MAX_EFFECTS)
+  FemEffectHistory *histories;  // of steps that are there    (count, FEM_MAX_EFFECTS)
   unsigned char *slips;         // 0: apart, 1: sticks, 2: slips             (interfaces, contact vertices)
   double worst;                 // what is left in a step, as a share of the largest force
   long long switches;           // between sticking and slipping, of vertices from step to step
@@ -64,8 +54,14 @@ void fem_replay_destroy(FemReplay *replay); // also of a zeroed one
 
 // STATUS_SOLVER: a step cannot be balanced; the message says which.
 Status fem_replay_go(FemReplay *replay);
-// Step k as it was found: `state` is there, `before` at step k − 1.
+// Step k as it was found: `state` is there, `before` at step k − 1. From the last step on, one by one: its
+// segment may be done again.
 Status fem_replay_return(FemReplay *replay, int k);
+// Whether the replay begins anew at step k, both ways.
+bool fem_replay_is_anew(const FemReplay *replay, int k);
+// u, v of step k, which is there, before it of some others.
+double *fem_replay_u(const FemReplay *replay, int k);
+double *fem_replay_v(const FemReplay *replay, int k);
 // The matrix K + c D + c² M there.
 Status fem_replay_factorise(FemReplay *replay, int k);
 

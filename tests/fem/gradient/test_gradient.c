@@ -639,37 +639,6 @@ START_TEST(a_check_runs_along_a_direction_and_with_half_the_steps) {
 }
 END_TEST
 
-static Status answer_within(double megabytes, AppGradientAnswer *answer) {
-  const AppGradientWords words = {.of = {"displacement:lower:x"},
-                                  .by = {"contact.friction"},
-                                  .of_count = 1,
-                                  .by_count = 1,
-                                  .most_megabytes = megabytes};
-  SceneRun scene;
-  scene_open(&scene, "gradient_rub", NULL);
-  Status status = app_gradient_answer(answer, &scene.model, &words, NULL);
-  scene_close(&scene);
-  return status;
-}
-
-// Of eight steps and the start, of three numbers a coordinate, and what friction remembers.
-START_TEST(a_replay_that_needs_too_much_memory_is_refused) {
-  AppGradientAnswer answer;
-  ck_assert_ok(answer_within(0, &answer));
-  double all = 1e-6 * (double)answer.steps.bytes;
-  size_t positions = 3 * sizeof(double) * (size_t)answer.steps.count * (size_t)answer.steps.unknown_count;
-  ck_assert_uint_gt(answer.steps.bytes, positions);
-  ck_assert_uint_lt(answer.steps.bytes, 2 * positions);
-  app_gradient_answer_destroy(&answer);
-  ck_assert_ok(answer_within(all, &answer));
-  app_gradient_answer_destroy(&answer);
-  ck_assert_int_eq(answer_within(0.9 * all, &answer), STATUS_INPUT);
-  ck_assert_ptr_nonnull(strstr(status_message(), "--memory: up to t = "));
-  ck_assert_double_gt(answer.steps.times[answer.steps.count - 1], 0.5); // not before it shows
-  app_gradient_answer_destroy(&answer);
-}
-END_TEST
-
 START_TEST(the_command_prints_scaling_laws) {
   // Displacements stay the same where E and the interface's stiffness grow together.
   char command[2048], line[256];
@@ -726,7 +695,6 @@ int main(void) {
   tcase_add_test(test_case, quantities_that_are_not_there_are_refused_by_name);
   tcase_add_test(test_case, what_is_left_unsolved_is_no_gradient);
   tcase_add_test(test_case, a_check_runs_along_a_direction_and_with_half_the_steps);
-  tcase_add_test(test_case, a_replay_that_needs_too_much_memory_is_refused);
   tcase_add_test(test_case, the_command_prints_scaling_laws);
   return suite_run("gradient", test_case, 300);
 }
