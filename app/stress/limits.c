@@ -44,6 +44,10 @@ static const char NESTED[] = "grad V of a network is not 0 where one tetrahedron
                              "tells that from a force that means something";
 static const char LEARNED_APART[] = "V and the centroid are learned apart from each other: their forces are "
                                     "not quite the gradient of a potential";
+static const char LEARNED_ON_EDGE[] =
+    "V and the centroid are learned apart from each other: as long as the edges stay exactly upon each "
+    "other, "
+    "energy rises at a rate that does not depend on the step; 1e-9 m aside it does as with clip";
 static const char LEARNED_VOLUME[] = "the error of the learned V";
 static const char ROUNDED[] =
     "a clearance of 5e-7 m is a rounding of single precision: contact comes and goes";
@@ -69,7 +73,7 @@ static const AppStressLimit limits[] = {
     {"vertex on vertex", LEARNED, "energy gain", 0.004, LEARNED_APART,
      "trouble.energy, history.csv: energy_gain"},
     {"spike*", LEARNED, "energy gain", 0.003, LEARNED_APART, "trouble.energy, history.csv: energy_gain"},
-    {"wedges, parallel", LEARNED, "energy gain", 0.0012, LEARNED_APART,
+    {"wedges, parallel", LEARNED, "energy gain", 0.0018, LEARNED_ON_EDGE,
      "trouble.energy, history.csv: energy_gain"},
     SLABS("flat slabs*", PAPERS, 0.7, 1.1, 1.1, PIECEWISE, AUDIT),
     SLABS("flat slabs*", INTEGRABLE, 0.7, 1.1, 1.1, ROUGH, AUDIT),
