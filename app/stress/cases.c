@@ -28,15 +28,48 @@ static void ask_no_passage(const AppStressRun *run, AppStressRow *row) {
   app_stress_ask_most(row, "share of the body inside", run->result.contact.overlap_volume_max / volume, 0.02);
 }
 
-// Driven by 20 mm, of which 2 mm are free. No force can exceed what crushes the base: E times its area.
-static void judge_sharp(const AppStressRun *run, AppStressRow *row) {
+// No force can exceed what crushes the base: E times its area.
+static void ask_sharp(const AppStressRun *run, AppStressRow *row) {
   ask_no_passage(run, row);
   double width = app_stress_run_highest(run, 0, 1, 0) - app_stress_run_lowest(run, 0, 1, 0);
   double depth = app_stress_run_highest(run, 0, 1, 1) - app_stress_run_lowest(run, 0, 1, 1);
   double young = run->model.parts[1].material.young;
   app_stress_ask_most(row, "force over E A", run->result.contact.force_max / (young * width * depth), 1);
-  app_stress_ask_most(row, "asymmetry in x", app_stress_run_asymmetry(run, 0), 1e-3);
-  app_stress_ask_most(row, "asymmetry in y", app_stress_run_asymmetry(run, 1), 1e-3);
+}
+
+static void ask_mirrored(const AppStressRun *run, AppStressRow *row, int frame, double most) {
+  app_stress_ask_most(row, "asymmetry in x", app_stress_run_asymmetry(run, frame, 0), most);
+  app_stress_ask_most(row, "asymmetry in y", app_stress_run_asymmetry(run, frame, 1), most);
+}
+
+static void judge_sharp(const AppStressRun *run, AppStressRow *row) {
+  ask_sharp(run, row);
+  ask_mirrored(run, row, -1, 1e-6);
+}
+
+// The first frame in which the two bodies touch; the last if none.
+static int find_touch(const AppStressRun *run) {
+  int last = app_stress_run_frames(run) - 1;
+  for (int f = 0; f < last; f++) {
+    double force[3] = {0, 0, 0};
+    app_stress_run_force(run, f, "lower, upper", force);
+    if (length_of(force) > 0) return f;
+  }
+  return last;
+}
+
+// What is balanced on a tip or an edge is unstable: an asymmetry grows at a rate of √(k/m), k the slope of
+// the force sideways and m the mass of the tip: here by e² to e⁹ in a frame of 1 ms, at any tolerance. Two
+// frames after the touch, rounding cannot be seen yet, and a method that prefers a side can. At the end the
+// body has slid off, and no energy was gained or lost.
+static void judge_balanced(const AppStressRun *run, AppStressRow *row) {
+  int frame = find_touch(run) + 2, last = app_stress_run_frames(run) - 1;
+  const FemAudit *audit = &run->result.energy.audit;
+  double end = fmax(app_stress_run_asymmetry(run, -1, 0), app_stress_run_asymmetry(run, -1, 1));
+  ask_sharp(run, row);
+  ask_mirrored(run, row, frame < last ? frame : last, 1e-9);
+  app_stress_ask_occurred(row, "asymmetry at the end", end, 0.01);
+  app_stress_ask_most(row, "energy lost", fem_audit_lost(audit) / audit->scale, 0.01);
 }
 
 // The tilt of the first body's top at the end: highest less lowest of its vertices, over its width.
@@ -304,13 +337,14 @@ static const AppStressScene cases[] = {
      .overrides = {LOWER_ON_EDGE, "bodies.upper.place={" ON_EDGE "translate: [0.0166667, 0, 0.11]}"}},
     {"edge on edge, parallel", "tetrahedra", UPRIGHT, .judge = judge_nothing,
      .overrides = {LOWER_ON_EDGE, "bodies.upper.place={" ON_EDGE_TURNED "translate: [0, 0.0166667, 0.11]}"}},
-    {"spikes", "sharp", SOUND, .judge = judge_sharp, .is_quick = true},
+    {"spikes", "sharp", SOUND, .judge = judge_balanced, .is_quick = true},
     {"wedges, crossed", "sharp", SOUND, .judge = judge_sharp,
      .overrides = {MESH("lower", "wedge"), MESH("upper", "wedge"),
                    "bodies.upper.place={rotate: {axis: [1, 1, 0], degrees: 180}, translate: [0, 0, 0.242]}"}},
-    {"wedges, parallel", "sharp", SOUND, .judge = judge_sharp,
+    {"wedges, parallel", "sharp", SOUND, .judge = judge_balanced,
      .overrides = {MESH("lower", "wedge"), MESH("upper", "wedge")}},
-    {"spike and wedge", "sharp", SOUND, .judge = judge_sharp, .overrides = {MESH("lower", "wedge")}},
+    {"spike and wedge", "sharp", SOUND, .judge = judge_balanced,
+     .overrides = {MESH("lower", "wedge"), "time.end=0.024", "output.frames=24"}},
     {"wedge in a crack", "sharp", SOUND, .judge = judge_sharp,
      .overrides = {MESH("lower", "crack"), MESH("upper", "wedge"), HELD_AT_BOTTOM, DOWN_TO("0.032"),
                    HELD_ABOVE("0.0319")}},

@@ -20,11 +20,9 @@ static const char PIECEWISE[] =
 static const char ROUGH[] =
     "the network's grad V is continuous but errs by tens of per cent, sideways too, and "
     "what is wrong does not cancel between neighbouring pairs";
-static const char BALANCED[] =
-    "an edge balanced on an edge is an unstable equilibrium: rounding decides to which side it slides off";
-static const char TIPS[] =
-    "a tip balanced on a tip or an edge is an unstable equilibrium, and the chosen stiffness "
-    "lets it go deeper: rounding decides to which side it slides off";
+static const char SINGLE[] =
+    "rounding in single precision is above the asymmetry that is asked for, and grows";
+static const char STEADY[] = "its forces do not tip what stands on a tip or an edge";
 static const char MEDIAL[] =
     "pressed in deeper than half of the finer slab's thickness, from where the other side is "
     "nearer";
@@ -63,10 +61,6 @@ static const char AUDIT[] = "tetlap compare --audit-only exact: force error";
   }
 
 static const AppStressLimit limits[] = {
-    {"spikes", NULL, "asymmetry in x", 0.09, TIPS, NULL},
-    {"spikes", NULL, "asymmetry in y", 0.09, TIPS, NULL},
-    {"spike and wedge", NULL, "asymmetry in x", 0.05, TIPS, NULL},
-    {"spike and wedge", NULL, "asymmetry in y", 0.05, TIPS, NULL},
     {"flat slabs, edge ratio 1/2", NULL, "pressure against 2 c depth", 0.25, MEDIAL, NULL},
     {"flat slabs*", NETWORKS, "pressure against 2 c depth", 0.45, ROUGH, AUDIT},
     {"flat slabs*", LEARNED, "pressure against 2 c depth", 0.013, LEARNED_VOLUME, AUDIT},
@@ -79,6 +73,7 @@ static const AppStressLimit limits[] = {
     SLABS("flat slabs*", INTEGRABLE, 0.7, 1.1, 1.1, ROUGH, AUDIT),
     {"spike*", NETWORKS, "asymmetry in x", 0.06, UNSYMMETRIC, AUDIT},
     {"spike*", NETWORKS, "asymmetry in y", 0.07, UNSYMMETRIC, AUDIT},
+    {"spikes", NETWORKS, "asymmetry at the end", 0, STEADY, NULL},
     {"wedge*", NETWORKS, "asymmetry in x", 0.035, UNSYMMETRIC, AUDIT},
     {"wedge*", NETWORKS, "asymmetry in y", 0.03, UNSYMMETRIC, AUDIT},
     {"tetrahedron inside", NETWORKS, "steps told of", 0, NESTED,
@@ -95,8 +90,8 @@ static const AppStressLimit limits[] = {
      "history.csv: angular_x, angular_y, angular_z"},
     {"nearly incompressible, 0.49", NULL, "error of the deflection", 0.15, COARSE, NULL},
     {"nearly incompressible, 0.499", NULL, "error of the deflection", 0.15, COARSE, NULL},
-    {"wedges, parallel", NULL, "asymmetry in x", 0.06, BALANCED, NULL},
-    {"wedges, parallel", "clip32", "asymmetry in y", 0.002, BALANCED, NULL},
+    {"wedges, parallel", "clip32", "asymmetry in x", 1e-6, SINGLE, NULL},
+    {"wedges, parallel", "clip32", "asymmetry in y", 1e-6, SINGLE, NULL},
 };
 
 static bool is_named(const char *pattern, const char *name) {

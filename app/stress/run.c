@@ -145,12 +145,13 @@ static int find_mirrored(const AppStressRun *run, const FemModelBody *body, int 
   return nearest;
 }
 
-double app_stress_run_asymmetry(const AppStressRun *run, int axis) {
+double app_stress_run_asymmetry(const AppStressRun *run, int frame, int axis) {
   const FemModelBody *b = &run->model.bodies[1];
   double worst = 0, size = 0;
   for (int a = b->vertex_begin; a < b->vertex_end; a++) {
     int m = find_mirrored(run, b, a, axis);
-    const double *here = app_stress_run_position(run, -1, a), *there = app_stress_run_position(run, -1, m);
+    const double *here = app_stress_run_position(run, frame, a),
+                 *there = app_stress_run_position(run, frame, m);
     for (int c = 0; c < 3; c++) {
       double image = c == axis ? -there[c] : there[c];
       worst = fmax(worst, fabs(here[c] - image));

@@ -43,8 +43,8 @@ bool app_stress_run_force(const AppStressRun *run, int frame, const char *name, 
 bool app_stress_run_is_finite(const AppStressRun *run);
 // The element of the last frame that is furthest from its volume at rest: |det F − 1|.
 double app_stress_run_distortion(const AppStressRun *run);
-// How far the last frame of the second body is from its mirror image in the plane axis = 0, over the body's
-// size; the mesh must be symmetric.
-double app_stress_run_asymmetry(const AppStressRun *run, int axis);
+// How far the second body is from its mirror image in the plane axis = 0, over the body's size; the mesh must
+// be symmetric.
+double app_stress_run_asymmetry(const AppStressRun *run, int frame, int axis);
 
 #endif
