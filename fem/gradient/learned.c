@@ -50,7 +50,7 @@ Status fem_learned_count_weights(const FemModel *model, size_t *count) {
   return status_fail(
       STATUS_INPUT,
       "--weights: '%s' has no weights with derivatives; contact.overlap must be geo, geo-small, "
-      "or a weights file of such a network",
+      "hybrid or hybrid=geo, or a weights file of such a network",
       model->scene->contact.overlap);
 }
 

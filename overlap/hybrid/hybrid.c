@@ -75,6 +75,29 @@ static Status eval_slopes(const void *self, int count, const double *pairs, doub
   return hybrid->ops->eval_slopes(hybrid->self, count, pairs, slopes);
 }
 
+// One without a centroid of its own has no derivatives by weights, and is not asked.
+static size_t weight_count(const void *self) {
+  const Hybrid *hybrid = self;
+  return hybrid->ops->training->count(hybrid->self);
+}
+
+static void read_weights(const void *self, double *parameters) {
+  const Hybrid *hybrid = self;
+  hybrid->ops->training->read(hybrid->self, parameters);
+}
+
+static Status train(const void *self, int count, const double *pairs, const double *by, double *slope) {
+  const Hybrid *hybrid = self;
+  return hybrid->ops->training->pull(hybrid->self, count, pairs, by, slope);
+}
+
+static Status write_weights(const void *self, const double *numbers, const char *path) {
+  const Hybrid *hybrid = self;
+  return hybrid->ops->training->write(hybrid->self, numbers, path);
+}
+
+static const OverlapTraining training = {weight_count, read_weights, train, write_weights};
+
 const OverlapOps overlap_hybrid_ops = {
     .name = "hybrid",
     .help = "learned where a bound of its error is small, clip elsewhere: geo-small unless another is named",
@@ -87,5 +110,6 @@ const OverlapOps overlap_hybrid_ops = {
     .eval_batch = eval_batch,
     .eval_bounds = eval_bounds,
     .eval_slopes = eval_slopes,
+    .training = &training,
     .destroy = destroy,
 };

@@ -49,6 +49,15 @@ double overlap_hybrid_share(const OverlapHybridSigns *signs) {
   return find_steps(signs, steps) ? 1 - left_by_others(steps, -1, -1) : 0;
 }
 
+double overlap_hybrid_share_by_volume(const OverlapHybridSigns *signs) {
+  Step steps[FACTORS];
+  double slope = 0;
+  if (!find_steps(signs, steps)) return 0;
+  for (int f = 0; f < FACTORS; f++)
+    slope += (f == 0 ? -1 : 1) * left_by_others(steps, f, f) * steps[f].slope / signs->volume;
+  return slope;
+}
+
 // hessian += factor · (∇² ln v), j ≥ i, of v with gradient and Hessian as given.
 static void add_log_bend(double factor, double value, const double *gradient, const double *bend,
                          double *hessian) {

@@ -22,6 +22,9 @@ typedef struct OverlapHybridSigns {
 // c; 0 where V or B is 0.
 double overlap_hybrid_share(const OverlapHybridSigns *signs);
 
+// ∂c/∂V at a given B.
+double overlap_hybrid_share_by_volume(const OverlapHybridSigns *signs);
+
 // c, ∇c (24) and, unless NULL, ∇²c (24, 24), of which j ≥ i is written.
 double overlap_hybrid_share_derive(const OverlapHybridSigns *signs, double *gradient, double *hessian);
 

@@ -256,6 +256,63 @@ static Status eval_slopes(const void *self, int count, const double *pairs, doub
   return STATUS_OK;
 }
 
+// ---- By the weights of V's network; those of the bound are kept.
+
+static size_t weight_count(const void *self) {
+  const Sure *sure = self;
+  return overlap_geo_ops.training->count(sure->geo);
+}
+
+static void read_weights(const void *self, double *parameters) {
+  overlap_geo_ops.training->read(((const Sure *)self)->geo, parameters);
+}
+
+static Status write_weights(const void *self, const double *numbers, const char *path) {
+  return overlap_geo_ops.training->write(((const Sure *)self)->geo, numbers, path);
+}
+
+// What g has by the network's V and x̄, given what it has by those of the mixture:
+//   V_m = (1 − c) V + c V_clip,   V_m x̄_m = (1 − c) V x̄ + c V_clip x̄_clip,   c a function of V.
+static Status unmix(const Sure *sure, const double *pair, const double *by, double *own_by) {
+  double own, bound, volume, own_centroid[3], centroid[3], along = 0;
+  unsigned flags, clip_flags;
+  memcpy(own_by, by, 4 * sizeof *by);
+  TRY(overlap_geo_eval_bounded(
+      &sure->geo->model, &sure->bound,
+      &(OverlapBatch){
+          .pair_count = 1, .pairs = pair, .volume = &own, .centroid = own_centroid, .flags = &flags},
+      &bound));
+  OverlapHybridSigns signs = {.pair = pair, .doubt = sure->doubt, .volume = own, .bound = bound};
+  double share = flags & OVERLAP_FALLBACK ? 0 : overlap_hybrid_share(&signs);
+  if (!(share > 0)) return STATUS_OK;
+  TRY(overlap_clip_ops.eval_pair(
+      NULL, pair, &(OverlapAnswer){.volume = &volume, .centroid = centroid, .flags = &clip_flags}));
+  double slope = overlap_hybrid_share_by_volume(&signs), mixed = (1 - share) * own + share * volume;
+  double factor = 1 - share + slope * (volume - own);
+  for (int k = 0; k < 3; k++) {
+    double middle = ((1 - share) * own * own_centroid[k] + share * volume * centroid[k]) / mixed;
+    along += by[1 + k] * ((1 - share) * own_centroid[k] +
+                          slope * (volume * centroid[k] - own * own_centroid[k]) - middle * factor);
+    own_by[1 + k] = by[1 + k] * (1 - share) * own / mixed;
+  }
+  own_by[0] = by[0] * factor + along / mixed;
+  return STATUS_OK;
+}
+
+static Status train(const void *self, int count, const double *pairs, const double *by, double *slope) {
+  const Sure *sure = self;
+  double *own_by = memory_zeroed(4 * (size_t)count, sizeof *own_by);
+  if (!own_by) return status_no_memory("derivatives by weights");
+  Status status = STATUS_OK;
+  for (int i = 0; i < count && !status; i++)
+    status = unmix(sure, pairs + SIZE * (ptrdiff_t)i, by + 4 * (ptrdiff_t)i, own_by + 4 * (ptrdiff_t)i);
+  if (!status) status = overlap_geo_ops.training->pull(sure->geo, count, pairs, own_by, slope);
+  memory_free(own_by);
+  return status;
+}
+
+static const OverlapTraining training = {weight_count, read_weights, train, write_weights};
+
 static bool has_centroid(const void *self) {
   return ((const Sure *)self)->geo->model.network.has_centroid;
 }
@@ -271,5 +328,6 @@ const OverlapOps overlap_hybrid_sure_ops = {
     .eval_batch = eval_batch,
     .eval_bounds = eval_bounds,
     .eval_slopes = eval_slopes,
+    .training = &training,
     .destroy = destroy,
 };

@@ -42,7 +42,8 @@ static const AppOption option_table[] = {
      "done twice (default: what there is)",
      1, CLI_POSITIVE, CLI_TO(Options, words.most_megabytes)},
     {"weights", 'w', "FILE",
-     "Write dg/dw by the weights of contact.overlap's network, a geo, as a weights file of the same shape; "
+     "Write dg/dw by the weights of contact.overlap's network, a geo or a hybrid's, as a weights file of the "
+     "same shape; "
      "of several quantities FILE's stem is followed by -0, -1, …",
      1, CLI_TEXT, CLI_TO(Options, weights), .example = "slope.safetensors"},
     {"total", 0, NULL,

@@ -183,13 +183,13 @@ END_TEST
 
 START_TEST(slopes_by_weights_agree_with_differences_of_runs) {
   static const char *const scenes[] = {"gradient_blocks", "gradient_ball"};
-  static const char *const nets[] = {"geo", "geo-small"};
-  const char *body = _i < 2 ? "upper" : "slab", *scene = scenes[_i / 2];
+  static const char *const nets[] = {"geo", "geo-small", "hybrid"};
+  const char *body = _i < 3 ? "upper" : "slab", *scene = scenes[_i / 3];
   char setting[400], of[3][64];
   snprintf(of[0], sizeof of[0], "displacement:%s:x", body);
-  snprintf(of[1], sizeof of[1], _i < 2 ? "moment:lower:upper:y" : "force:ball:slab:x");
-  snprintf(of[2], sizeof of[2], _i < 2 ? "reaction:upper:fixed[0]:x" : "reaction:slab:fixed[0]:z");
-  Weights weights = weights_open(nets[_i % 2]);
+  snprintf(of[1], sizeof of[1], _i < 3 ? "moment:lower:upper:y" : "force:ball:slab:x");
+  snprintf(of[2], sizeof of[2], _i < 3 ? "reaction:upper:fixed[0]:x" : "reaction:slab:fixed[0]:z");
+  Weights weights = weights_open(nets[_i % 3]);
   weights_write(&weights, 0, setting);
   Asked asked = {.scene = scene, .setting = setting, .of = {of[0], of[1], of[2]}, .by_weights = true};
   Answer answer, moved;
@@ -207,7 +207,7 @@ START_TEST(slopes_by_weights_agree_with_differences_of_runs) {
     double along = weights_along(&weights, answer.gradient.weights + weights.count * (size_t)g);
     ck_assert_double_gt(fabs(along), 0);
     ck_assert_msg(fabs(along - found[g]) <= 1e-5 * fabs(along), "%s by %s: along %.12g, runs %.12g, g = %.6g",
-                  of[g], nets[_i % 2], along, found[g], answer.gradient.values[g]);
+                  of[g], nets[_i % 3], along, found[g], answer.gradient.values[g]);
   }
   destroy(&answer);
   weights_close(&weights);
@@ -675,7 +675,7 @@ int main(void) {
   tcase_add_test(test_case, blocks_of_two_materials_agree_with_differences_of_runs);
   tcase_add_loop_test(test_case, two_blocks_by_learned_overlaps_agree_with_differences_of_runs, 0, 3);
   tcase_add_loop_test(test_case, a_ball_on_a_slab_by_learned_overlaps_agrees_with_differences_of_runs, 0, 3);
-  tcase_add_loop_test(test_case, slopes_by_weights_agree_with_differences_of_runs, 0, 4);
+  tcase_add_loop_test(test_case, slopes_by_weights_agree_with_differences_of_runs, 0, 6);
   tcase_add_test(test_case, a_driven_slab_upon_obstacles_agrees_with_differences_of_runs);
   tcase_add_test(test_case, a_slab_pressed_by_laws_agrees_with_differences_of_runs);
   tcase_add_loop_test(test_case, blocks_pressed_by_a_law_agree_with_differences_of_runs, 0, 3);

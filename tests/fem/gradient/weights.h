@@ -19,6 +19,7 @@ static const double weights_step = 2e-8, weights_places[WEIGHTS_PLACES] = {-2, -
 typedef struct Weights {
   OverlapModel model;
   size_t count;
+  const char *prefix; // of a file's name in a scene
   double *own, *way, *moved;
 } Weights;
 
@@ -26,6 +27,7 @@ static inline Weights weights_open(const char *name) {
   Weights weights;
   Random random = random_seeded(3, 0);
   ck_assert_ok(overlap_models_create(&weights.model, name));
+  weights.prefix = strcmp(name, "hybrid") == 0 ? "hybrid=" : "";
   weights.count = weights.model.ops->training->count(weights.model.self);
   weights.own = calloc(weights.count, sizeof(double));
   weights.way = calloc(weights.count, sizeof(double));
@@ -48,12 +50,18 @@ static inline double weights_along(const Weights *weights, const double *slope) 
 
 // Writes the weights that lie at a place on the way; a setting that names them.
 static inline void weights_write(Weights *weights, double place, char setting[400]) {
-  static const char KEY[] = "contact.overlap=";
-  snprintf(setting, 400, "%s%s/moved.safetensors", KEY, folder);
+  char path[300];
+  snprintf(path, sizeof path, "%s/moved.safetensors", folder);
+  snprintf(setting, 400, "contact.overlap=%s%s", weights->prefix, path);
   for (size_t i = 0; i < weights->count; i++)
     weights->moved[i] = weights->own[i] + place * weights_step * weights->way[i];
-  ck_assert_ok(
-      weights->model.ops->training->write(weights->model.self, weights->moved, setting + strlen(KEY)));
+  ck_assert_ok(weights->model.ops->training->write(weights->model.self, weights->moved, path));
+  if (!*weights->prefix) return;
+  char command[800]; // its bound stays
+  snprintf(command, sizeof command,
+           "cp %s/net/weights/geo-small-bound.safetensors %s/moved-bound.safetensors", TETLAP_SOURCE_DIR,
+           folder);
+  ck_assert_int_eq(system(command), 0);
 }
 
 #endif
