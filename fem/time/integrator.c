@@ -18,6 +18,7 @@
 #include "fem/time/newton/newton.h"
 #include "fem/time/nvector.h"
 #include "fem/time/reason.h"
+#include "fem/time/stop.h"
 #include "fem/time/sundials.h"
 
 // Without contact a step is lengthened only if it can double (IDA's own), which saves factorisations.
@@ -434,51 +435,26 @@ static Status check_stall(FemIntegrator *integrator) {
   return say_why(integrator, integrator->time, stats.last_step, find_worst(integrator, IDA_ERR_FAIL), reason);
 }
 
-// Where a step of `planned` [s] would leave less than itself to the stop, two equal ones go there: one that
-// is short would have to grow again.
-static void halve(FemIntegrator *integrator, double begin, double planned, double least) {
-  double half = 0.5 * (integrator->stop - begin);
-  if (!(2 * half > planned && half < planned && half > least)) return;
-  integrator->stop = begin + half;
-  integrator->stops_at_knot = false;
-}
-
-// No step longer than effects can follow (contact lists hold so far), nor one that changes with each step by
-// a little: of the lengths 2^(k/2) s the longest that will do, for a matrix serves steps of one length.
-static void limit_step(FemIntegrator *integrator, double begin, double planned, double least) {
-  double longest = fem_system_longest_step(integrator->system);
-  if (!(longest < integrator->max_step)) {
-    IDASetMaxStep(integrator->ida, integrator->max_step);
-    return;
-  }
-  double even = fmax(exp2(0.5 * floor(2 * log2(longest))), least);
-  IDASetMaxStep(integrator->ida, even);
-  halve(integrator, begin, fmin(planned, even), least);
-  if (!(planned > longest) || !(integrator->stop - begin > even)) return;
-  integrator->stop = begin + even;
-  integrator->stops_at_knot = false;
-}
-
 // The next step ends at def.end at the latest, or just before the knot that what is prescribed has to be
 // followed to.
 static Status choose_stop(FemIntegrator *integrator) {
-  double begin = integrator->time, end = fmin(integrator->def.end, integrator->target),
-         step = integrator->max_step;
-  if (integrator->has_steps) IDAGetCurrentStep(integrator->ida, &step);
-  double least = fmax(integrator->min_step, FEM_TIME_RESOLUTION * integrator->def.end);
-  FemForesight foresight = {.displacement = integrator->def.displacement_tolerance,
-                            .velocity = integrator->def.velocity_tolerance,
-                            .resolution = least};
-  double farthest = fmin(begin + 2 * step, end);
-  double knot = fem_system_horizon(integrator->system, &foresight, begin, farthest);
-  bool has_knot = knot < farthest && end - knot > least;
-  integrator->stop = has_knot ? fem_signal_before(knot) : end;
-  integrator->stops_at_knot = has_knot;
-  if (integrator->has_steps) halve(integrator, begin, step, least);
-  limit_step(integrator, begin, step, least);
-  if (IDASetStopTime(integrator->ida, integrator->stop) == IDA_SUCCESS) return STATUS_OK;
-  return status_fail(STATUS_SOLVER, "IDA cannot stop at t = %.17g s from t = %.17g s", integrator->stop,
-                     begin);
+  const FemIntegratorDef *def = &integrator->def;
+  FemStopDef wish = {.system = integrator->system,
+                     .begin = integrator->time,
+                     .end = fmin(def->end, integrator->target),
+                     .planned = integrator->max_step,
+                     .max_step = integrator->max_step,
+                     .may_halve = integrator->has_steps,
+                     .displacement = def->displacement_tolerance,
+                     .velocity = def->velocity_tolerance,
+                     .least = fmax(integrator->min_step, FEM_TIME_RESOLUTION * def->end)};
+  if (integrator->has_steps) IDAGetCurrentStep(integrator->ida, &wish.planned);
+  FemStop stop = fem_stop_choose(&wish);
+  integrator->stop = stop.time;
+  integrator->stops_at_knot = stop.is_knot;
+  IDASetMaxStep(integrator->ida, stop.longest);
+  if (IDASetStopTime(integrator->ida, stop.time) == IDA_SUCCESS) return STATUS_OK;
+  return status_fail(STATUS_SOLVER, "IDA cannot stop at t = %.17g s from t = %.17g s", stop.time, wish.begin);
 }
 
 // After a knot whose successor is nearer than the last step was long, that step cannot predict the next one:
