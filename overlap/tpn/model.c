@@ -152,10 +152,6 @@ static const OverlapOptions for_hybrid = {.ghosts = OVERLAP_GHOSTS_FADE,
                                           .beyond = OVERLAP_BEYOND_EXACT,
                                           .coplanar = OVERLAP_COPLANAR_CLIP};
 
-Status overlap_tpn_model_create(void **self, const char *path, const OverlapOptions *options) {
-  return create(self, path, options, &as_published, false, net_kernel_best());
-}
-
 // `weights`: a file, or the name of one that ships; NULL: `own`.
 static Status create_named(void **self, const char *weights, const char *own, const OverlapOptions *given,
                            const OverlapOptions *standard, bool is_hybrid, NetKernelKind kernel) {

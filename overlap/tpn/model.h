@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// TetrahedronPairNet as an overlap model: `tpn-published` as its authors train it, `tpn` after it (reading a,
-// vertices and tetrahedra in an order of their own, V over the determinant), `tpn-scene` made fit for scenes, and `hybrid`, section 5
-// of the paper. `tpn-bf16` is tpn computed with less precision.
+// TetrahedronPairNet as an overlap model: `tpn-published` as its authors train it; `tpn` after the paper
+// (vertices and tetrahedra in an order of their own, V over the determinant); `tpn-scene` made fit for
+// scenes; and `hybrid`, section 5 of the paper. `tpn-bf16` is tpn computed with less precision.
 //
 //   pair ─ disjoint, by an exact test? ─► V = 0                                       (ghosts: cut, fade)
 //     └─► normalised (normalise.h), in one order or both ─► network ─► z, v ─┐
@@ -47,8 +47,6 @@
 extern const OverlapOps overlap_tpn_ops, overlap_tpn_bf16_ops, overlap_tpn_published_ops,
     overlap_tpn_scene_ops, overlap_tpn_hybrid_ops;
 
-// `path` as tpn; options NULL: its own. STATUS_INPUT: another kind of network; the message names the file.
-Status overlap_tpn_model_create(void **self, const char *path, const OverlapOptions *options);
 void overlap_tpn_model_destroy(void *self);
 
 // As OverlapOps.

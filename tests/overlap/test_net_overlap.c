@@ -18,7 +18,7 @@ static void check_gradient(const char *normalisation) {
   double pairs[24 * 40], volume, gradient[24];
   unsigned flags;
   write_network(normalisation, NET_SILU);
-  ck_assert_ok(overlap_tpn_model_create(&self, path, NULL));
+  ck_assert_ok(overlap_tpn_ops.create(&self, path, NULL));
   draw_pairs(1, 40, pairs);
   int checked = 0;
   for (int n = 0; n < 40; n++) {
@@ -58,7 +58,7 @@ START_TEST(batches_give_what_single_pairs_give) {
   static double pairs[24 * COUNT], volume[COUNT], gradient[24 * COUNT], logits[COUNT];
   void *self;
   write_network("pca, V times 1000", NET_RELU);
-  ck_assert_ok(overlap_tpn_model_create(&self, path, NULL));
+  ck_assert_ok(overlap_tpn_ops.create(&self, path, NULL));
   draw_pairs(2, COUNT, pairs);
   OverlapBatch batch = {.pair_count = COUNT, .pairs = pairs, .volume = volume, .gradient = gradient};
   ck_assert_ok(overlap_tpn_model_eval_batch(self, &batch));
@@ -81,7 +81,7 @@ START_TEST(flat_first_tetrahedron_is_answered_by_exact) {
   unsigned flags = 0;
   void *self;
   write_network("unit, V times 1000", NET_RELU);
-  ck_assert_ok(overlap_tpn_model_create(&self, path, NULL));
+  ck_assert_ok(overlap_tpn_ops.create(&self, path, NULL));
   ck_assert_ok(overlap_tpn_model_eval_pair(
       self, pair, &(OverlapAnswer){.volume = &volume, .gradient = gradient, .flags = &flags}));
   ck_assert(volume == 0 && (flags & OVERLAP_FALLBACK));
@@ -109,7 +109,7 @@ END_TEST
 START_TEST(weights_of_another_normalisation_are_refused_by_name) {
   void *self;
   write_network("analytic-centre frame", NET_RELU);
-  ck_assert_int_eq(overlap_tpn_model_create(&self, path, NULL), STATUS_INPUT);
+  ck_assert_int_eq(overlap_tpn_ops.create(&self, path, NULL), STATUS_INPUT);
   ck_assert(strstr(status_message(), "analytic-centre frame") && strstr(status_message(), path));
   unlink(path);
 }
