@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two overlap models in the same configuration. Only pairs of tetrahedra count: half-spaces ask no model.
+// Two overlap models in the same configuration. Only pairs of tetrahedra count: shapes ask no model.
 #ifndef TETLAP_CONTACT_AUDIT_H
 #define TETLAP_CONTACT_AUDIT_H
 

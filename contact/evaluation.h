@@ -67,8 +67,8 @@ void contact_evaluation_destroy(ContactEvaluation *evaluation);
 // The last result is forgotten; `rest` has changed.
 void contact_evaluation_start_over(ContactEvaluation *evaluation, const ContactLayout *layout);
 
-// Half-spaces only where asked: no overlap model takes part in them. STATUS_SOLVER: the model gave a volume
-// that is not a number ≥ 0.
+// `with_shapes`: pairs with shapes, too, in which no overlap model takes part. STATUS_SOLVER: the model gave
+// a volume that is not a number ≥ 0.
 Status contact_evaluation_run(ContactEvaluation *evaluation, const ContactLayout *layout,
                               const ContactCandidateList *candidates, const OverlapModel *model,
                               bool with_shapes, double time, const double *positions);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which elements overlap, by a model and by a reference, and where the two differ: the classification that
 // TetrahedronPairNet is judged by, here for the meshes of a scene. All pairs of elements whose boxes meet are
-// classified; half-spaces and balls need no model.
+// classified; shapes need no model.
 //
 // A model's answer is that of its status head if it has one, else V > 0. Where a model has an exact test for
 // disjoint pairs, that decides.

@@ -60,7 +60,7 @@ Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *l
                              const ContactStiffnessWay *way, const ContactStiffnessSink *sink);
 
 // Visits cliques that contain every list the sink would be given if all candidates whose boxes are within
-// `reach` of each other (a half-space: that are within `reach` of it) overlapped.
+// `reach` of each other (of a shape: that are within `reach` of it) overlapped.
 Status contact_stiffness_couple(ContactStiffness *stiffness, const ContactLayout *layout,
                                 const ContactCandidateList *candidates, double time, const double *positions,
                                 double reach, void *visitor,

@@ -4,19 +4,20 @@
 // shapes without elements.
 //
 // clang-format off
-//     candidates (broad.h, kept while motion < margin/2)
+//     candidates (contact/search/candidates.h: kept until two parties have come nearer by their margin)
 //         │ gather (n, 2, 4, 3)
 //         ▼
 //     overlap model ──► V_ij, x̄_ij ──► forces by the depth field (contact/pressure/field.h)
 //                   or  V_ij, ∇V_ij ──► forces by volumes alone (contact/volume/volume.h)
 // clang-format on
 //
-// W is kept per interface (unordered pair of bodies), so a third body does not change the pressure between
-// two. A body that meets itself is an interface of its own, with the same potential: W_i is what other
-// elements of the body cover of i, each pair counts once for either of its elements, and the leading ½ is
-// that between two bodies; two halves of a body that are not connected press each other as two bodies would.
-// The overlap models see bodies in general position (contact/search/layout.h), so that planes of regular
-// meshes do not coincide. Evaluation changes no list: an integrator may try a step, reject it and try again.
+// W_i, the volume that is covered of an element i, is kept per interface (unordered pair of bodies), so a
+// third body does not change the pressure between two. A body that meets itself is an interface of its own,
+// with the same potential: W_i is what other elements of the body cover of i, each pair counts once for
+// either of its elements, and both sides have the weight ½, as between two bodies; two halves of a body that
+// are not connected press each other as two bodies would. The overlap models see bodies in general position
+// (contact/search/layout.h), so that planes of regular meshes do not coincide. Evaluation changes no list: an
+// integrator may try a step, reject it and try again.
 #ifndef TETLAP_CONTACT_SYSTEM_H
 #define TETLAP_CONTACT_SYSTEM_H
 
@@ -52,9 +53,9 @@ void contact_system_start_over(ContactSystem *system);
 void contact_system_destroy(ContactSystem *system);
 
 // After an accepted step (and once before the first evaluation): rebuilds the candidate lists where the
-// motion asks for it. `velocities` (vertex, 3) and `step` [s]
-// (the next step's expected length) size the margin: as wide as two bodies are apart while no pair is near,
-// at most def.margin otherwise, so that nothing passes through anything within one step.
+// motion asks for it. `velocities` (vertex, 3) and `step` [s] (the next step's expected length) size the
+// margin: as wide as two bodies are apart while no pair is near, at most def.margin otherwise, so that
+// nothing passes through anything within one step.
 Status contact_system_update(ContactSystem *system, double time, const double *positions,
                              const double *velocities, double step);
 
@@ -132,13 +133,12 @@ Status contact_system_couple(ContactSystem *system, const ContactEvaluation *eva
                              void *visitor, Status (*visit)(void *visitor, int count, const int *vertices));
 
 // Pressure, depth and traction at the surface by contact/pressure/trace.h, those at rest included, but for
-// their friction. `pulls`: friction on side 0 of each pair of the evaluation [N]; NULL: none. With another
-// potential than `field` zeros.
+// their friction. `pulls`: friction on side 0 of each pair of the evaluation [N]; NULL: none. With the
+// potential `nodal` zeros.
 Status contact_system_trace(ContactSystem *system, const ContactEvaluation *evaluation,
                             const double (*pulls)[3], const ContactTraceResult *result);
 // How far the given vertices of a surface are from what they may touch, by contact/search/gap.h [m];
-// INFINITY: nothing is near, or what is near is at rest, too. With another potential than `field` all are
-// INFINITY.
+// INFINITY: nothing is near, or what is near is at rest, too. With the potential `nodal` all are INFINITY.
 void contact_system_gaps(ContactSystem *system, const ContactEvaluation *evaluation, double *gaps);
 
 // The power that moving shapes put in [W]: ∂U/∂t at fixed positions.
@@ -176,7 +176,7 @@ void contact_system_carriers(ContactSystem *system, int *count, const int **vert
 bool contact_system_asks_model(const ContactSystem *system);
 
 // Audit: the same configuration with another overlap model: differences against `reference`.
-// Half-spaces are left out: no model takes part in them. Changes nothing but scratch memory.
+// Shapes are left out: no model takes part in them. Changes nothing but scratch memory.
 Status contact_system_audit(ContactSystem *system, double time, const double *positions,
                             const OverlapModel *candidate, const OverlapModel *reference,
                             ContactAudit *audit);

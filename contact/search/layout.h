@@ -45,8 +45,8 @@ typedef struct ContactLayout {
   double *tet_volumes;    // of whole tetrahedra, rest [m³]                   (tet_count)
   double *cell_volumes;   // V_i, rest [m³]                                   (cell_count)
   double *vertex_volumes; // V_a = ¼ Σ_{i∋a} V_i [m³]                         (vertex_count)
-  ContactInterfaceDef
-      *interfaces; // bodies with bodies and themselves first, then with half-spaces  (interface_count)
+  // Bodies with bodies and themselves first, then with shapes.
+  ContactInterfaceDef *interfaces; //                                         (interface_count)
   int interface_count;
   double nudge;        // length of a nudge [m]
   double (*nudges)[3]; // of each body, see above [m]                       (body_count)

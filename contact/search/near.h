@@ -21,7 +21,7 @@ typedef struct ContactNear {
   double reference_time; // [s]
   // Scratch memory.
   ContactMotion *motions;   // of each party since then                (party_count)
-  double (*blown)[12];      // cells                                   (cell_count)
+  double (*blown)[12];      // enlarged cells                          (cell_count)
   double (*boxes)[6];       // of those                                (cell_count)
   unsigned char *is_listed; // 0 between calls                         (cell_count)
   bool *is_kept;            // candidates                              (kept_capacity)

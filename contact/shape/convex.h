@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tetrahedron against a convex solid with flat faces (a box, a prism), in closed
-// form: the overlap with such an obstacle.
+// A tetrahedron against a convex solid with flat faces (a box, a prism), in closed form: the overlap with
+// such an obstacle.
 //
 // Only planes that cut the tetrahedron take part. The boundary of the intersection P is made of polygons: P_f
 // on face f of the tetrahedron (the triangle, clipped by the planes) and Q_k on plane k (the section of the

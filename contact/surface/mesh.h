@@ -14,7 +14,7 @@
 // vertex moves as a fixed mean of the four real ones, so a cell deforms with its tetrahedron, and whatever
 // acts on the cell acts on the four vertices of that.
 //
-// For the other potentials the cells are the tetrahedra.
+// For the potential `nodal` the cells are the tetrahedra.
 #ifndef TETLAP_CONTACT_SURFACE_MESH_H
 #define TETLAP_CONTACT_SURFACE_MESH_H
 
@@ -63,7 +63,7 @@ static inline bool contact_mesh_leads(const ContactMesh *mesh, int cell) {
 // Fills the virtual vertices of positions (position_count, 3) from the others.
 void contact_mesh_place(const ContactMesh *mesh, const ContactSystemDef *def, double *positions);
 
-// Barycentric coordinates in a cell to those in its tetrahedron.
+// Turns barycentric coordinates in a cell into those in its tetrahedron, in place.
 static inline void contact_mesh_fold(const ContactMesh *mesh, const ContactSystemDef *def, int cell,
                                      double lambda[4]) {
   int replaced = mesh->replaced[cell];

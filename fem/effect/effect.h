@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An effect: one module that a scene calls for (elasticity, damping, gravity, contact …). An effect
-// that a scene does not call for is never created and costs nothing. Each is one file with one
-// table of operations, and one line in effect.c.
+// An effect: one module that a scene calls for (elasticity, damping, gravity, contact …). An effect that a
+// scene does not call for is never created and costs nothing. Each is one file with one table of operations,
+// and one line in fem/effect/effect.c.
 #ifndef TETLAP_FEM_EFFECT_EFFECT_H
 #define TETLAP_FEM_EFFECT_EFFECT_H
 
@@ -29,9 +29,9 @@ typedef struct FemEffectOps {
   Status (*create_again)(void **self, void **old);
   // Once all effects are there: to find one that this effect builds on, by fem_system_effect. NULL: none.
   Status (*connect)(void *self, const struct FemSystem *system);
-  // Tells the matrix pattern which vertices this effect couples at that state; *has_grown (may be NULL) as in
-  // matrix.h. Called once, and for effects that `couples_anew` before every assembly. NULL: none, or only a
-  // vertex with itself.
+  // Tells the matrix pattern which vertices this effect couples at that state; *has_grown (may be NULL) as
+  // in fem/sparse/pattern.h. Called once, and for effects that `couples_anew` before every assembly. NULL:
+  // none, or only a vertex with itself.
   Status (*couple)(void *self, const FemState *state, FemPattern *pattern, int *has_grown);
   // Renews the lists that evaluations near this state need; `step` [s] is the length expected next. Results
   // do not depend on lists. NULL: there are none.
@@ -84,7 +84,7 @@ static inline bool fem_effect_is_of(const FemEffect *effect, FemEffectPart part)
 // All effects there are.
 const FemEffectOps *const *fem_effect_list(int *count);
 
-// Those files (fem/effect/NAME.c) define these:
+// Each is defined in the file of its name, here or in the rooms `elements` and `contact`.
 extern const FemEffectOps fem_effect_elasticity;
 extern const FemEffectOps fem_effect_volume;
 extern const FemEffectOps fem_effect_plasticity;

@@ -23,7 +23,7 @@ typedef struct FemModelBody {
   int quadratic_begin, quadratic_end;
   FemElementKind element;
   double mass; // [kg]
-  double cube; // whose factor costs as much a vertex [vertices] (work.h)
+  double cube; // vertices of the cube whose factor costs as much a vertex (fem/model/work.h)
   bool is_obstacle;
 } FemModelBody;
 

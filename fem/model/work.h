@@ -7,8 +7,8 @@
 
 #include "fem/model/model.h"
 
-// Fewer vertices than that are a cube's, which nobody need count; a model of more unknowns than this is not
-// factorised, since the factor would take gigabytes.
+// A body of at most FEM_WORK_UNCOUNTED vertices counts as a cube. So do all of a model of more than
+// FEM_WORK_UNKNOWNS unknowns, which is not factorised, since the factor would take gigabytes.
 enum { FEM_WORK_UNCOUNTED = 2500, FEM_WORK_UNKNOWNS = 200000 }; // not chosen: measured
 
 // Fills each body's `cube`: of how many vertices a cube is whose factor takes as many operations a vertex, by

@@ -27,7 +27,7 @@ typedef struct FemMatrix {
   const int *unknown_of_dof;      // borrowed                                 (3·vertex_count)
   const double *rest;             // of the vertices [m], borrowed; NULL: not known   (vertex_count, 3)
   const FemShare *share;          // of the cliques that are added here; borrowed; NULL: all
-  struct FemMatrixBlocks *blocks; // vertex-pair lookup; owns col_begin and row, shared among copies
+  struct FemMatrixBlocks *blocks; // where blocks of vertices stand; owns col_begin and row; copies share it
 } FemMatrix;
 
 // Lays out all couplings of the pattern, zeroed. Unknowns must be numbered in the order of their dofs.

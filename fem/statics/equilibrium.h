@@ -31,6 +31,7 @@ Status fem_equilibrium_forces_moving(FemEquilibrium *equilibrium, double time, c
                                      const double *v, double *force);
 Status fem_equilibrium_factorise_moving(FemEquilibrium *equilibrium, double time, const double *u,
                                         const double *v, double damping, double shift);
+// Solves with the last factor; b and x must not overlap. RETRY as of FemSolverOps.solve.
 Status fem_equilibrium_solve(FemEquilibrium *equilibrium, const double *b, double *x);
 
 // The largest absolute value.

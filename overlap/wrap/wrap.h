@@ -18,8 +18,8 @@ typedef struct OverlapWrapKind {
   const char *name;
   const char *help;   // one line
   const char *number; // what its number is; NULL: it takes none
-  double least, most,
-      usual; // the number is above the first and below the second; without one it is the third
+  // The number is above `least` and below `most`; where none is given it is `usual`.
+  double least, most, usual;
   // Whether the inner model can have it; NULL: each can. STATUS_INPUT: why not.
   Status (*check)(const OverlapModel *inner);
   // As OverlapOps has them. `eval`: one call at a time, and never of no pairs.

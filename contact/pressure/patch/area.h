@@ -7,8 +7,8 @@
 // if that is more, n_f the outward normal of the face, ĝ the direction in which the other's depth grows: a
 // side of a body that has sunk in counts nothing. Along an edge of B, where depths grow from its side, A's
 // surface counts less than B's. Of a shape without elements, A = Σ |S_f ∩ shape| (n_f · ĝ)₊, by triangles
-// that are quartered where its surface passes. With other potentials, which know no surface, it is Σ of
-// contact_field_area.
+// that are quartered where its surface passes. With the potential `nodal`, which knows no surface, it
+// is Σ of contact_field_area.
 #ifndef TETLAP_CONTACT_PRESSURE_PATCH_AREA_H
 #define TETLAP_CONTACT_PRESSURE_PATCH_AREA_H
 

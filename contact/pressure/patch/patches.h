@@ -39,7 +39,7 @@ typedef struct ContactPatches {
   ContactPatch *patches;    //                                                (patch_count)
   ContactElement *elements; //                                                (element_count)
   ContactNode *nodes;       //                                                (node_count)
-  int (*pair_elements)[2];  // elements of each pair, −1: the half-space      (pair_count)
+  int (*pair_elements)[2];  // elements of each pair, −1: a shape             (pair_count)
   size_t patch_capacity, element_capacity, node_capacity, pair_capacity;
   int *element_of_tet; // scratch: −1 between calls                            (tet_count)
   int *node_of_vertex; // scratch: −1 between calls                            (vertex_count)

@@ -16,7 +16,7 @@ double fem_effect_contact_reach(const void *effect);
 Status fem_effect_contact_evaluate(const FemSystem *system, const FemState *state,
                                    const ContactEvaluation **evaluation);
 
-// The name of side `number` of an interface: a body, a mesh obstacle or a half-space.
+// The name of side `number` of an interface: a body, an obstacle with a mesh, or a shape.
 const char *fem_effect_contact_name(const void *effect, int number);
 
 // Makes the overlap model that the word names (overlap/source.h), its file seen from the program; NULL: the

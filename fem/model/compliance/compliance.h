@@ -64,8 +64,8 @@ typedef struct FemCompliance {
   FemComplianceBound *bounds; // what it was chosen by                       (body_count, party_count)
   double *pressures;          // by which they may press each other, roughly; 0: not known [Pa]     likewise
   int *levels;                // of contact.smooth                           (body_count)
-  bool
-      *is_faceted; // a level above 0 is due, but its elements are quadratic, with straight edges (body_count)
+  // A level above 0 is due, but the body's elements are quadratic, with straight edges.
+  bool *is_faceted; //                                                       (body_count)
 } FemCompliance;
 
 // Entries of what cannot meet are positive too. STATUS_INPUT: `contact.pairs` names what is not there.

@@ -46,7 +46,7 @@ typedef struct FemRunMatrix {
 typedef struct FemRunRetries {
   long long energy;   // they gained energy
   long long momentum; // forces and motion differed
-  long long slip;     // what slipped had turned within them
+  long long slip;     // friction acted along a slip that had reversed within them
 } FemRunRetries;
 
 typedef struct FemRunEnergy {
@@ -67,13 +67,14 @@ typedef struct FemRunEquilibrium {
 } FemRunEquilibrium;
 
 typedef struct FemRunContact {
-  bool is_on, asks_model;  // whether any of it asks an overlap model
-  ContactPairCounts pairs; // handed to the overlap model
-  int pairs_max;
-  double overlap_volume_max, deepest_overlap_max;
-  double force_max;       // of an interface [N]
-  double force_last;      // the largest at the last frame [N]
-  double force_since_row; // the largest in the steps since the last row of the history [N]
+  bool is_on, asks_model;     // whether any of it asks an overlap model
+  ContactPairCounts pairs;    // handed to the overlap model
+  int pairs_max;              // pairs with V > 0, the most at a time
+  double overlap_volume_max;  // [m³]
+  double deepest_overlap_max; // largest share of an element that was covered
+  double force_max;           // of an interface [N]
+  double force_last;          // the largest at the last frame [N]
+  double force_since_row;     // the largest in the steps since the last row of the history [N]
 } FemRunContact;
 
 typedef struct FemRunStatus {
