@@ -29,31 +29,43 @@ static double slope_at(const ContactLaw *law, double pressure, double deepest) {
   return contact_law_at(law, high).slope;
 }
 
+// The slope found last: of many interfaces nearly all have one law and one material.
+typedef struct {
+  const ContactLaw *law;
+  double young, slope;
+} Slope;
+
 // Of a contact as that of an element: its pressure over the strain of an edge [Pa].
-static double modulus_of(const FemModel *model, const ContactInterfaceDef *interface, double young) {
+static double modulus_of(const FemModel *model, const ContactInterfaceDef *interface, double young,
+                         Slope *last) {
   if (model->scene->contact.potential == CONTACT_POTENTIAL_NODAL) return interface->stiffness;
-  if (interface->law) return model->edge * slope_at(interface->law, young, model->edge);
+  if (interface->law) {
+    if (interface->law != last->law || young != last->young)
+      *last = (Slope){interface->law, young, slope_at(interface->law, young, model->edge)};
+    return model->edge * last->slope;
+  }
   return (interface->shape < 0 ? 2 : 1) * model->edge * interface->stiffness;
 }
 
 // The fastest speed with which such a contact throws an element of a party back [m/s].
-static double speed_of(const FemModel *model, const ContactInterfaceDef *interface, int party) {
+static double speed_of(const FemModel *model, const ContactInterfaceDef *interface, int party, Slope *last) {
   double fastest = 0;
   if (party >= model->body_count) return fastest;
   const FemModelBody *body = &model->bodies[party];
   for (int p = body->part_begin; p < body->part_end; p++) {
     const FemMaterial *material = &model->parts[p].material;
-    fastest = fmax(fastest, sqrt(modulus_of(model, interface, material->young) / material->density));
+    fastest = fmax(fastest, sqrt(modulus_of(model, interface, material->young, last) / material->density));
   }
   return fastest;
 }
 
 double fem_run_stage_rebound(const FemModel *model, const ContactLayout *contact) {
   double fastest = fem_model_fastest_wave(model);
+  Slope last = {NULL, 0, 0};
   for (int i = 0; i < contact->interface_count; i++) {
     const ContactInterfaceDef *interface = &contact->interfaces[i];
-    fastest = fmax(fastest,
-                   fmax(speed_of(model, interface, interface->a), speed_of(model, interface, interface->b)));
+    fastest = fmax(fastest, speed_of(model, interface, interface->a, &last));
+    fastest = fmax(fastest, speed_of(model, interface, interface->b, &last));
   }
   return FEM_SHORTEST_RETRY * model->edge / fastest;
 }

@@ -42,20 +42,28 @@ START_TEST(nothing_moves_in_a_four_hundredth_of_an_elements_crossing) {
 }
 END_TEST
 
-// E = 1e6 Pa, ρ = 1000 kg/m³, against a half-space. A linear contact presses with c d; a law is taken where
-// it presses with E: p = 1e6 (d/1e-6 m)² at 1e-6 m, where p′ = 2e12 Pa/m.
+// E = 1e6 Pa and ρ = 1000 kg/m³ against a half-space, or the lighter body of two with ρ = 1000 kg/m³. A
+// linear contact presses with c d, of two bodies with 2 c d; a law is taken where it presses with E: p = 1e6
+// (d/1e-6 m)² at 1e-6 m, where p′ = 2e12 Pa/m; `nodal` has a modulus [Pa].
 START_TEST(a_contact_throws_an_element_back_as_a_wave_of_its_modulus_would) {
-  const char *const contacts[] = {"contact={stiffness: 1e10}", "contact={stiffness: 1}",
-                                  "contact={law: {power: {pressure: 1e6, depth: 1e-6, exponent: 2}}}"};
-  const double slopes[] = {1e10, 0, 2e12}; // [Pa/m]
-  for (int k = 0; k < 3; k++) {
+  const struct {
+    const char *scene, *contact;
+    double slope, modulus; // [Pa/m], [Pa]
+  } cases[] = {
+      {"drop", "contact={stiffness: 1e10}", 1e10, 0},
+      {"drop", "contact={stiffness: 1}", 0, 1e6},
+      {"drop", "contact={law: {power: {pressure: 1e6, depth: 1e-6, exponent: 2}}}", 2e12, 0},
+      {"drop", "contact={potential: nodal, stiffness: 1e9}", 0, 1e9},
+      {"collision", "contact={stiffness: 1e10}", 2e10, 0},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     SceneRun run;
-    scene_open(&run, "drop", (const char *const[]){contacts[k], NULL});
+    scene_open(&run, cases[k].scene, (const char *const[]){cases[k].contact, NULL});
     FemSystem system;
     ck_assert_ok(fem_system_create(&system, &run.model));
     void *contact = fem_system_effect(&system, &fem_effect_contact);
     const ContactLayout *layout = contact_system_layout(fem_effect_contact_system(contact));
-    double edge = run.model.edge, speed = sqrt(fmax(1e6, slopes[k] * edge) / 1000),
+    double edge = run.model.edge, speed = sqrt(fmax(cases[k].modulus, cases[k].slope * edge) / 1000),
            expected = edge / speed / 400;
     ck_assert_near(fem_run_stage_rebound(&run.model, layout), expected, 1e-9 * expected);
     fem_system_destroy(&system);
