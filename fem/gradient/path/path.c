@@ -361,7 +361,7 @@ static Status train(Sweep *sweep, FemGradient *gradient) {
 }
 
 static Status begin_friction(Sweep *sweep) {
-  const FemEffectHistory *next = sweep->replay.histories + sweep->step * FEM_MAX_EFFECTS;
+  const FemEffectHistory *next = fem_replay_histories(&sweep->replay, sweep->step);
   for (int g = 0; g < sweep->def->goal_count && has_friction(sweep); g++) {
     Behind *behind = &sweep->behind[g];
     TRY(fem_friction_begin(&behind->friction, &sweep->replay.state));

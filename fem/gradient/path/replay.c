@@ -40,6 +40,12 @@ double *fem_replay_v(const FemReplay *replay, int k) {
   return replay->v + (size_t)replay->n * (size_t)(k - replay->first);
 }
 
+FemEffectHistory *fem_replay_histories(const FemReplay *replay, int k) {
+  int segment = k / replay->plan.length, place = k % replay->plan.length;
+  int row = place == 0 ? segment : replay->plan.segment_count + place;
+  return replay->histories + (size_t)row * (size_t)replay->system.effect_count;
+}
+
 double fem_replay_mass(const FemReplay *replay, int unknown) {
   return replay->system.model->mass[replay->system.numbering.dof_of_unknown[unknown] / 3];
 }
@@ -84,6 +90,11 @@ static Status create_krylov(FemReplay *replay) {
   return fem_krylov_create(&replay->krylov, replay->n);
 }
 
+static size_t history_count(const FemReplay *replay) {
+  size_t rows = (size_t)replay->plan.segment_count + (size_t)replay->plan.length;
+  return rows * (size_t)replay->system.effect_count;
+}
+
 Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemReplaySteps *steps) {
   *replay = (FemReplay){.steps = steps};
   TRY(fem_system_create(&replay->system, model));
@@ -91,7 +102,7 @@ Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemRepl
   replay->plan = fem_replay_steps_plan(steps);
   if (replay->plan.bytes == 0)
     return status_fail(STATUS_MEMORY, "the replay of a run needs %zu bytes at least", replay->plan.least);
-  size_t n = (size_t)replay->n, count = (size_t)steps->count, segments = (size_t)replay->plan.segment_count;
+  size_t n = (size_t)replay->n, segments = (size_t)replay->plan.segment_count;
   size_t rows = (size_t)replay->plan.length + (segments > 1 ? FEM_REPLAY_LEAD : 1);
   replay->u = memory_zeroed(rows * n, sizeof(double));
   replay->v = memory_zeroed(rows * n, sizeof(double));
@@ -99,7 +110,7 @@ Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemRepl
   replay->force = memory_zeroed(n, sizeof(double));
   replay->step = memory_zeroed(n, sizeof(double));
   replay->weights = memory_zeroed(n, sizeof(double));
-  replay->histories = memory_zeroed(count * FEM_MAX_EFFECTS, sizeof *replay->histories);
+  replay->histories = memory_zeroed(history_count(replay), sizeof *replay->histories);
   if (!replay->u || !replay->v || !replay->saved || !replay->force || !replay->step || !replay->weights ||
       !replay->histories)
     return status_no_memory("the replay of a run");
@@ -116,7 +127,7 @@ Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemRepl
 }
 
 void fem_replay_destroy(FemReplay *replay) {
-  for (int i = 0; replay->histories && i < replay->steps->count * FEM_MAX_EFFECTS; i++)
+  for (size_t i = 0; replay->histories && i < history_count(replay); i++)
     fem_effect_history_destroy(&replay->histories[i]);
   fem_krylov_destroy(&replay->krylov);
   fem_mixing_destroy(&replay->mixing);
@@ -259,10 +270,16 @@ static Status count_switches(FemReplay *replay) {
   return STATUS_OK;
 }
 
+// In arrays that are not larger than what they hold.
 static Status keep_histories(FemReplay *replay, int k) {
+  FemEffectHistory *kept = fem_replay_histories(replay, k);
   for (int e = 0; e < replay->system.effect_count; e++) {
     const FemEffectHistory *history = &replay->system.accepted.histories[e];
-    TRY(fem_effect_history_set(&replay->histories[k * FEM_MAX_EFFECTS + e], history->values, history->count));
+    size_t count = history->count;
+    fem_effect_history_destroy(&kept[e]);
+    if (count == 0) continue;
+    kept[e] = (FemEffectHistory){memory_copy(history->values, count, sizeof(double)), count, count};
+    if (!kept[e].values) return status_no_memory("the replay of a run");
   }
   return STATUS_OK;
 }
@@ -282,9 +299,9 @@ static double lead(const double *t, const double *u, size_t n, int k, const doub
 
 static void guess(FemReplay *replay, int k) {
   size_t n = (size_t)replay->n;
-  const double *t = replay->steps->times, *found = replay->steps->u;
+  const double *t = replay->steps->times, *found = replay->steps->u ? replay->steps->u[k] : NULL;
   double *u = fem_replay_u(replay, k), *v = fem_replay_v(replay, k);
-  if (found) memcpy(u, found + n * (size_t)k, n * sizeof *u);
+  if (found) memcpy(u, found, n * sizeof *u);
   for (size_t i = 0; i < n && !found; i++) u[i] = lead(t, u + i, n, k, v + i);
 }
 
@@ -320,7 +337,8 @@ static Status begin(FemReplay *replay) {
 static void recall(FemReplay *replay, int k, FemState *state) {
   fem_system_scatter(&replay->system, replay->steps->times[k], fem_replay_u(replay, k),
                      fem_replay_v(replay, k), state);
-  memcpy(state->histories, replay->histories + k * FEM_MAX_EFFECTS, sizeof state->histories);
+  memcpy(state->histories, fem_replay_histories(replay, k),
+         (size_t)replay->system.effect_count * sizeof *state->histories);
   state->version = fem_state_new_version();
   state->last = state;
 }
@@ -361,10 +379,8 @@ static void save(FemReplay *replay, int segment, bool back) {
 
 // The segment comes to stand there; nothing stays of the other but where segments begin.
 static void turn_to(FemReplay *replay, int segment) {
-  int begin = replay->segment * replay->plan.length;
-  for (int k = begin + 1; k < replay->steps->count && k < begin + replay->plan.length; k++)
-    for (int e = 0; e < FEM_MAX_EFFECTS; e++)
-      fem_effect_history_destroy(&replay->histories[k * FEM_MAX_EFFECTS + e]);
+  size_t begins = (size_t)(replay->plan.segment_count + 1) * (size_t)replay->system.effect_count;
+  for (size_t i = begins; i < history_count(replay); i++) fem_effect_history_destroy(&replay->histories[i]);
   replay->segment = segment;
   save(replay, segment, true);
 }

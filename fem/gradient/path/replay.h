@@ -41,7 +41,7 @@ typedef struct FemReplay {
   double *force, *step;         // scratch                                   (n)
   double *ahead, *aside;        // scratch, where the matrix is not exact    (n)
   double *rate;                 // the same, velocities                      (n)
-  FemEffectHistory *histories;  // of steps that are there    (count, FEM_MAX_EFFECTS)
+  FemEffectHistory *histories;  // of segments' ends, of steps between (segments + length, effect_count)
   unsigned char *slips;         // 0: apart, 1: sticks, 2: slips             (interfaces, contact vertices)
   double worst;                 // what is left in a step, as a share of the largest force
   long long switches;           // between sticking and slipping, of vertices from step to step
@@ -62,6 +62,8 @@ bool fem_replay_is_anew(const FemReplay *replay, int k);
 // u, v of step k, which is there, before it of some others.
 double *fem_replay_u(const FemReplay *replay, int k);
 double *fem_replay_v(const FemReplay *replay, int k);
+// What effects remember after step k, which is there or ends a segment.                 (effect_count)
+FemEffectHistory *fem_replay_histories(const FemReplay *replay, int k);
 // The matrix K + c D + c² M there.
 Status fem_replay_factorise(FemReplay *replay, int k);
 

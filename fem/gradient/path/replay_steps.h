@@ -17,10 +17,10 @@ enum {
 
 typedef struct FemReplaySteps {
   double *times; // [s], owned                                              (count)
-  double *u;     // of a static scene, where each step's solution is looked for first; owned  (count, n)
+  double **u;    // of a static scene, where each step's solution is looked for first; owned  (count)(n)
   int count, unknown_count;
   size_t most;    // that a replay may keep [bytes]; 0: what there is
-  size_t bytes;   // that it keeps of all: positions, velocities and histories, and u
+  size_t bytes;   // that it keeps of all: positions, velocities and histories, and what is here
   size_t largest; // the most of a step
   size_t time_capacity, capacity;
 } FemReplaySteps;
