@@ -14,7 +14,7 @@ void contact_meetings_destroy(ContactMeetings *meetings) {
   memory_free(meetings->cells);
   memory_free(meetings->begin);
   memory_free(meetings->items);
-  memory_free(meetings->roots);
+  memory_free(meetings->parts);
   memory_free(meetings->first);
   *meetings = (ContactMeetings){0};
 }
@@ -40,7 +40,7 @@ static Status reserve(ContactMeetings *meetings, const ContactLayout *layout,
       memory_reserve((void **)&meetings->begin, &meetings->begin_capacity,
                      (size_t)evaluation->patches.element_count + 1, sizeof *meetings->begin) &&
       memory_reserve((void **)&meetings->items, &meetings->item_capacity, items, sizeof *meetings->items) &&
-      memory_reserve((void **)&meetings->roots, &meetings->root_capacity, items, sizeof *meetings->roots) &&
+      memory_reserve((void **)&meetings->parts, &meetings->part_capacity, items, sizeof *meetings->parts) &&
       memory_reserve((void **)&meetings->first, &meetings->first_capacity, positions,
                      sizeof *meetings->first);
   if (!has_room) return status_no_memory("elements that pass through bodies");
@@ -72,26 +72,26 @@ static int cell_of(const Work *work, int item) {
 
 // ---- Parts: trees of items, the root first.
 
-static int root_of(const int *roots, int i) {
-  while (roots[i] != i) i = roots[i];
+static int root_of(int *parents, int i) {
+  while (parents[i] != i) i = parents[i] = parents[parents[i]];
   return i;
 }
 
-static void join(int *roots, int i, int k) {
-  int a = root_of(roots, i), b = root_of(roots, k);
-  roots[a > b ? a : b] = a > b ? b : a;
+static void join(int *parents, int i, int k) {
+  int a = root_of(parents, i), b = root_of(parents, k);
+  parents[a > b ? a : b] = a > b ? b : a;
 }
 
-static void find_parts(const Work *work, int begin, int end) {
+static void grow_trees(const Work *work, int begin, int end) {
   const ContactMeetings *meetings = work->meetings;
   const ContactMesh *mesh = &work->layout->mesh;
   for (int i = begin; i < end; i++) {
     int cell = cell_of(work, meetings->items[i]);
-    meetings->roots[i] = i;
+    meetings->parts[i] = i;
     for (int v = 0; v < 4 && cell >= 0; v++) {
       int *first = &meetings->first[mesh->cells[cell][v]];
       if (*first < 0) *first = i;
-      join(meetings->roots, *first, i);
+      join(meetings->parts, *first, i);
     }
   }
   for (int i = begin; i < end; i++) {
@@ -130,22 +130,39 @@ static void add_item(const Work *work, int item, ContactMeeting *meeting) {
   meeting->reach = fmax(meeting->reach, field->depths[1 - side] / middle);
 }
 
-static void add_part(const Work *work, int interface, int tet, int root, int end) {
+// Adds the element's parts without what is met in them, but `cell_end` counts their cells. Of each item, the
+// one above it in its tree, which comes before it, gives way to its part.
+static void add_parts(const Work *work, int interface, int tet, int begin, int end) {
   ContactMeetings *meetings = work->meetings;
-  ContactMeeting *meeting = &meetings->list[meetings->count];
-  int cell_begin = meetings->count > 0 ? meeting[-1].cell_end : 0;
-  *meeting = (ContactMeeting){.interface = interface,
-                              .tet = tet,
-                              .cell = cell_of(work, meetings->items[root]),
-                              .cell_begin = cell_begin,
-                              .cell_end = cell_begin};
-  for (int i = root; i < end; i++) {
-    if (root_of(meetings->roots, i) != root) continue;
+  int *parts = meetings->parts;
+  for (int i = begin; i < end; i++) {
+    bool is_root = parts[i] == i;
+    parts[i] = is_root ? meetings->count++ : parts[parts[i]];
+    ContactMeeting *meeting = &meetings->list[parts[i]];
+    if (is_root)
+      *meeting =
+          (ContactMeeting){.interface = interface, .tet = tet, .cell = cell_of(work, meetings->items[i])};
+    meeting->cell_end++;
+  }
+}
+
+static void fill_parts(const Work *work, int first, int begin, int end) {
+  ContactMeetings *meetings = work->meetings;
+  for (int m = first, next = begin; m < meetings->count; m++) {
+    ContactMeeting *meeting = &meetings->list[m];
+    int cells = meeting->cell_end;
+    meeting->cell_begin = meeting->cell_end = next;
+    next += cells;
+  }
+  for (int i = begin; i < end; i++) {
+    ContactMeeting *meeting = &meetings->list[meetings->parts[i]];
     meetings->cells[meeting->cell_end++] = cell_of(work, meetings->items[i]);
     add_item(work, meetings->items[i], meeting);
   }
-  meeting->covered = meeting->volume / fmin(work->layout->tet_volumes[tet], meeting->other);
-  meetings->count++;
+  for (int m = first; m < meetings->count; m++) {
+    ContactMeeting *meeting = &meetings->list[m];
+    meeting->covered = meeting->volume / fmin(work->layout->tet_volumes[meeting->tet], meeting->other);
+  }
 }
 
 static int compare(const void *first, const void *second) {
@@ -164,11 +181,10 @@ Status contact_meetings_find(ContactMeetings *meetings, const ContactLayout *lay
   sort_items(meetings, patches, evaluation->pair_count);
   for (int p = 0; p < patches->patch_count; p++)
     for (int e = patches->patches[p].element_begin; e < patches->patches[p].element_end; e++) {
-      int begin = meetings->begin[e], end = meetings->begin[e + 1];
-      find_parts(&work, begin, end);
-      for (int i = begin; i < end; i++)
-        if (meetings->roots[i] == i)
-          add_part(&work, patches->patches[p].interface, patches->elements[e].tet, i, end);
+      int begin = meetings->begin[e], end = meetings->begin[e + 1], first = meetings->count;
+      grow_trees(&work, begin, end);
+      add_parts(&work, patches->patches[p].interface, patches->elements[e].tet, begin, end);
+      fill_parts(&work, first, begin, end);
     }
   if (meetings->count > 1) qsort(meetings->list, (size_t)meetings->count, sizeof *meetings->list, compare);
   return STATUS_OK;

@@ -26,9 +26,9 @@ typedef struct ContactMeetings {
   // Scratch memory.
   int *begin; // of each element of the patches, in `items`                            (elements + 1)
   int *items; // of each element: 2 pair + side                                        (two a pair)
-  int *roots; // of each item: the first one of its part, as far as is known           (two a pair)
+  int *parts; // of each item: its part, in `list`                                     (two a pair)
   int *first; // of each position: the first item with it; −1 between elements         (position_count)
-  size_t list_capacity, cell_capacity, begin_capacity, item_capacity, root_capacity, first_capacity;
+  size_t list_capacity, cell_capacity, begin_capacity, item_capacity, part_capacity, first_capacity;
 } ContactMeetings;
 
 void contact_meetings_destroy(ContactMeetings *meetings); // also of a zeroed one

@@ -53,16 +53,16 @@ static bool is_deep(const ContactMeeting *meeting, bool has_field) {
 static void meet(ContactPassageEntry *entry, const ContactMeeting *meeting, bool has_field) {
   Vec3 kept = vec3_at(entry->direction), h = direction_of(meeting);
   double length = vec3_length(h), along = vec3_dot(h, kept);
-  bool is_known = vec3_length(kept) > 0, was_deep = entry->is_deep;
+  bool is_known = vec3_length(kept) > 0, has_been_deep = entry->is_deep && is_known && along <= 0;
   entry->cell = meeting->cell;
   entry->reach = meeting->reach;
   entry->covered = meeting->covered;
-  entry->is_deep = is_deep(meeting, has_field);
+  bool is_deep_now = is_deep(meeting, has_field);
+  entry->is_deep = is_deep_now || has_been_deep;
   if (!(meeting->covered >= rounding())) return;
-  if (is_known && along < -TURNED && entry->is_deep) entry->is_turned = true;
+  if (is_known && along < -TURNED && is_deep_now) entry->is_turned = true;
   if (is_known && along > TURNED) entry->is_turned = false;
-  bool is_outside = !was_deep && !entry->is_deep;
-  bool is_followed = !is_known || (!entry->is_turned && (along > 0 || is_outside));
+  bool is_followed = !is_known || (!entry->is_turned && (along > 0 || !entry->is_deep));
   if (length > CLEAR && is_followed) vec3_store(entry->direction, vec3_scale(1 / length, h));
 }
 
@@ -72,9 +72,20 @@ static Status reserve(ContactPassageList *list, size_t count) {
              : status_no_memory("elements that pass through bodies");
 }
 
+static int compare(const ContactPassageEntry *entry, int interface, int tet) {
+  if (entry->interface != interface) return entry->interface < interface ? -1 : 1;
+  return (entry->tet > tet) - (entry->tet < tet);
+}
+
+// Counts an entry's element; the entries of one come after each other.
+static void count_element(ContactPassageCount *count, const ContactPassageEntry *entry) {
+  if (count->elements > 0 && compare(entry, count->last.interface, count->last.tet) == 0) return;
+  if (count->elements++ == 0) count->first = *entry;
+  count->last = *entry;
+}
+
 static void leave(ContactPassage *passage, const ContactPassageEntry *entry) {
-  if (!entry->is_turned) return;
-  if (passage->passed++ == 0) passage->first = *entry;
+  if (entry->is_turned) count_element(&passage->passed, entry);
 }
 
 // ---- From one accepted state to the next.
@@ -97,33 +108,32 @@ static int likeness(const ContactMeetings *meetings, const ContactLayout *layout
   return vec3_length(way) <= layout->margin;
 }
 
-// The part among those from `begin` on that the entry goes on in, −1: none.
+// The part among those from `begin` on that the entry goes on in, −1: none. Of a cell that one has, with its
+// four vertices, no other has any.
 static int find_part(const ContactMeetings *meetings, const ContactLayout *layout, int begin, int end,
                      const ContactPassageEntry *entry) {
   int best = -1, most = 0;
-  for (int m = begin; m < end; m++) {
+  for (int m = begin; m < end && most < 2 * 4; m++) {
     int found = likeness(meetings, layout, &meetings->list[m], entry->cell);
     if (found > most) most = found, best = m;
   }
   return best;
 }
 
-// Whether of two entries that go on in one part it is the first whose direction stays: what is turned is not
-// forgotten.
+// Whether of two entries that go on in one part it is the first that stays: what is turned, or else may still
+// turn, is not forgotten.
 static bool fits_better(const ContactPassageEntry *entry, const ContactPassageEntry *other,
                         const ContactMeeting *meeting) {
-  Vec3 h = direction_of(meeting);
+  Vec3 kept = vec3_at(entry->direction), other_kept = vec3_at(other->direction), h = direction_of(meeting);
+  bool is_known = vec3_length(kept) > 0, is_other_known = vec3_length(other_kept) > 0;
   if (entry->is_turned != other->is_turned) return entry->is_turned;
-  return vec3_dot(vec3_at(entry->direction), h) > vec3_dot(vec3_at(other->direction), h);
+  if (is_known != is_other_known) return is_known;
+  if (entry->is_deep != other->is_deep) return entry->is_deep;
+  return vec3_dot(kept, h) > vec3_dot(other_kept, h);
 }
 
 static void append(ContactPassageList *list, const ContactPassageEntry *entry) {
   list->entries[list->count++] = *entry;
-}
-
-static int compare(const ContactPassageEntry *entry, int interface, int tet) {
-  if (entry->interface != interface) return entry->interface < interface ? -1 : 1;
-  return (entry->tet > tet) - (entry->tet < tet);
 }
 
 // Entries of elements that meet nothing: they have left, or lie at rest.
@@ -181,7 +191,7 @@ static Status find_middles(ContactPassage *passage, const ContactLayout *layout)
 Status contact_passage_look(ContactPassage *passage, const ContactSystem *system,
                             const ContactEvaluation *evaluation) {
   const ContactLayout *layout = contact_system_layout(system);
-  passage->passed = 0;
+  passage->passed.elements = 0;
   passage->next.count = 0;
   TRY(find_middles(passage, layout));
   TRY(contact_meetings_find(&passage->meetings, layout, evaluation, passage->middles, rounding()));
@@ -194,24 +204,21 @@ void contact_passage_accept(ContactPassage *passage) {
   ContactPassageList now = passage->now;
   passage->now = passage->next;
   passage->next = now;
-  passage->passed = 0;
+  passage->passed.elements = 0;
 }
 
-int contact_passage_turned(const ContactPassage *passage, ContactPassageEntry *first) {
-  int count = 0;
-  for (int i = 0; i < passage->now.count; i++) {
-    if (!passage->now.entries[i].is_turned) continue;
-    if (count++ == 0) *first = passage->now.entries[i];
-  }
+ContactPassageCount contact_passage_turned(const ContactPassage *passage) {
+  ContactPassageCount count = {.elements = 0};
+  for (int i = 0; i < passage->now.count; i++)
+    if (passage->now.entries[i].is_turned) count_element(&count, &passage->now.entries[i]);
   return count;
 }
 
-int contact_passage_inside(const ContactPassage *passage, ContactPassageEntry *first) {
-  int count = 0;
+ContactPassageCount contact_passage_inside(const ContactPassage *passage) {
+  ContactPassageCount count = {.elements = 0};
   for (int i = 0; i < passage->now.count; i++) {
     const ContactPassageEntry *entry = &passage->now.entries[i];
-    if (!(entry->covered > 1 - rounding() && entry->reach > 0.5)) continue;
-    if (count++ == 0) *first = *entry;
+    if (entry->covered > 1 - rounding() && entry->reach > 0.5) count_element(&count, entry);
   }
   return count;
 }

@@ -12,17 +12,17 @@
 // direction in which it came in. The kept direction follows h from one accepted state to the next while |h| >
 // ½ and h turns by less than a right angle: so it does where an element slides round a drum or over an edge,
 // or turns together with B. Near the surface it follows however far h turns, as over a sharp ridge: only an
-// element that has been deep inside can come to the other side by passing through. Where h points against the
-// kept direction, the element has gone beyond the middle of B and is pushed out on the other side: it is
-// called turned. An element that leaves B while it is turned has passed through; one that comes back is no
-// longer turned.
+// element that has been deep inside can come to the other side by passing through, and that it has been is
+// kept until h turns back to within a right angle. Where h points against the kept direction, the element has
+// gone beyond the middle of B and is pushed out on the other side: it is called turned. An element that
+// leaves B while it is turned has passed through; one that comes back is no longer turned.
 //
 // Where B has several layers, or a slot, the element meets parts of it (contact/passage/meetings.h) that
 // press it from opposite sides, now one more and now the other. So h is that of a part, and the element keeps
 // one direction for each. A part of the next accepted state is the one before where it has the cell that the
 // element met most of, or neighbours of it, or, after a fast slide, lies at rest no farther from that than
-// the margin of contact's lists, which bounds the step. Of parts that become one the direction stays that
-// fits best.
+// the margin of contact's lists, which bounds the step. Where parts become one, what is turned stays, then
+// what has a direction, then what has been deep inside, then the direction that fits best.
 //
 // Whether an element is deep inside, as one must be to become turned, is judged by two shares, so the unit of
 // length does not matter:
@@ -47,7 +47,8 @@
 typedef struct ContactPassageEntry {
   int interface, tet;
   int cell; // of the part, the one that it meets most of; −1: a shape
-  bool is_turned, is_deep;
+  bool is_turned;
+  bool is_deep;          // or has been, and h has not come back to the kept direction since
   double direction[3];   // in which it came in; 0: not known yet
   double reach, covered; // scratch: the shares, now
 } ContactPassageEntry;
@@ -58,28 +59,35 @@ typedef struct ContactPassageList {
   size_t capacity;
 } ContactPassageList;
 
+// Elements of a list for which something holds: each once, in however many parts, for each body that it
+// meets.
+typedef struct ContactPassageCount {
+  int elements;
+  ContactPassageEntry first, last; // of the first and of the last of them, where there are any
+} ContactPassageCount;
+
 typedef struct ContactPassage {
   ContactPassageList now, next; // at the last accepted state, and at the one that is evaluated
-  int passed;                   // elements that have left turned, from `now` to `next`
-  ContactPassageEntry first;    // of them
+  ContactPassageCount passed;   // what has left turned, from `now` to `next`
   ContactMeetings meetings;     // of `next`
   double *middles;              // of each cell: the depth of the middle there [m]; `field` only
 } ContactPassage;
 
 void contact_passage_destroy(ContactPassage *passage); // also of a zeroed one, which is a beginning
 
-// At an evaluation of the system: fills `next`, `passed` and `first`.
+// At an evaluation of the system: fills `next` and `passed`. What it finds at the state that was accepted
+// last is what `now` has already.
 Status contact_passage_look(ContactPassage *passage, const ContactSystem *system,
                             const ContactEvaluation *evaluation);
 // The evaluated state is accepted.
 void contact_passage_accept(ContactPassage *passage);
 
-// How many elements are turned at the accepted state, and the first of them.
-int contact_passage_turned(const ContactPassage *passage, ContactPassageEntry *first);
+// What is turned at the accepted state.
+ContactPassageCount contact_passage_turned(const ContactPassage *passage);
 
-// How many elements of the accepted state lie inside of another body: they are covered, or cover what they
-// meet, and reach more than half way to its middle. `field` only.
-int contact_passage_inside(const ContactPassage *passage, ContactPassageEntry *first);
+// What lies inside of another body at the accepted state: it is covered, or covers what it meets, and reaches
+// more than half way to its middle. `field` only.
+ContactPassageCount contact_passage_inside(const ContactPassage *passage);
 
 // What a checkpoint keeps: so many numbers, a row an entry of `now`.
 enum { CONTACT_PASSAGE_KEPT = 8 };

@@ -259,11 +259,12 @@ Status fem_recorder_begin_step(FemRecorder *recorder, const FemState *state, con
   return fem_ledger_begin(&recorder->ledger, state, &entry);
 }
 
-static void fill_passages(const FemRecorder *recorder, int count, const ContactPassageEntry *first,
+static void fill_passages(const FemRecorder *recorder, const ContactPassageCount *passages,
                           FemTroubleState *state) {
+  const ContactPassageEntry *first = &passages->first;
   int interface_count;
-  state->count[FEM_TROUBLE_PASSED] = count;
-  if (count == 0) return;
+  state->count[FEM_TROUBLE_PASSED] = passages->elements;
+  if (passages->elements == 0) return;
   const ContactInterfaceDef *interface = &interfaces_of(recorder->system, &interface_count)[first->interface];
   state->first[FEM_TROUBLE_PASSED] = contact_system_origin(contact_of(recorder->system), first->tet);
   state->passed[0] = interface->a;
@@ -271,19 +272,17 @@ static void fill_passages(const FemRecorder *recorder, int count, const ContactP
 }
 
 Status fem_recorder_end_step(FemRecorder *recorder, const FemState *state, FemMeasures *measures) {
-  const ContactPassage *passage = &recorder->ledger.passage;
   FemLedgerEntry entry;
   TRY(describe(recorder, state, measures, &entry));
   TRY(fem_ledger_end(&recorder->ledger, state, &entry));
   measure_steps(recorder, state->time, measures);
-  fill_passages(recorder, passage->passed, &passage->first, &measures->trouble);
+  fill_passages(recorder, &recorder->ledger.passage.passed, &measures->trouble);
   return STATUS_OK;
 }
 
 void fem_recorder_find_turned(const FemRecorder *recorder, FemTroubleState *state) {
-  ContactPassageEntry first;
-  int count = contact_passage_turned(&recorder->ledger.passage, &first);
-  fill_passages(recorder, count, &first, state);
+  ContactPassageCount turned = contact_passage_turned(&recorder->ledger.passage);
+  fill_passages(recorder, &turned, state);
 }
 
 void fem_recorder_accept_step(FemRecorder *recorder) {

@@ -18,7 +18,7 @@ Status fem_run_watch_refuse(FemRunState *run, double time, const FemTroubleState
   fem_trouble_add(trouble, time, &passage);
   const FemLedger *ledger = &run->recorder.ledger;
   const ContactInterfaceDef *interface =
-      &contact_system_layout(ledger->contact)->interfaces[ledger->passage.first.interface];
+      &contact_system_layout(ledger->contact)->interfaces[ledger->passage.passed.first.interface];
   char text[1024];
   fem_trouble_describe_refusal(trouble, run->model, found, interface->law ? 0 : interface->stiffness, text,
                                sizeof text);
@@ -69,14 +69,13 @@ Status fem_run_watch(FemRunState *run, FemMeasures *measures) {
 
 // At the end of the run, where none passed through another.
 static Status watch_inside(FemRunState *run) {
-  ContactPassageEntry first;
-  int count = contact_passage_inside(&run->recorder.ledger.passage, &first);
-  if (count == 0) return STATUS_OK;
+  ContactPassageCount inside = contact_passage_inside(&run->recorder.ledger.passage);
+  if (inside.elements == 0) return STATUS_OK;
   const ContactLayout *layout = contact_system_layout(run->recorder.ledger.contact);
-  const ContactInterfaceDef *interface = &layout->interfaces[first.interface];
+  const ContactInterfaceDef *interface = &layout->interfaces[inside.first.interface];
   run->result->inside =
-      (FemRunInside){.count = count,
-                     .element = contact_system_origin(run->recorder.ledger.contact, first.tet),
+      (FemRunInside){.count = inside.elements,
+                     .element = contact_system_origin(run->recorder.ledger.contact, inside.first.tet),
                      .parties = {interface->a, interface->b}};
   if (!run->options->is_strict) return STATUS_OK;
   char text[512];

@@ -15,6 +15,7 @@ typedef struct Scene {
   ContactShape shape;
   int shape_count;
   double margin; // 0: the default
+  bool looks_again;
   OverlapModel model;
   ContactSystem *system;
   ContactPassage passage;
@@ -42,14 +43,38 @@ static void destroy(Scene *scene) {
 }
 
 // The present positions are the next accepted state.
-static void accept(Scene *scene) {
+static void look(Scene *scene) {
   ck_assert_ok(contact_system_update(scene->system, 0, scene->blocks.x, scene->still, 0.01));
   ck_assert_ok(
       contact_passage_look(&scene->passage, scene->system, evaluated_at(scene->system, 0, scene->blocks.x)));
-  scene->passed += scene->passage.passed;
+  scene->passed += scene->passage.passed.elements;
   contact_passage_accept(&scene->passage);
-  ContactPassageEntry first;
-  scene->most_turned = (int)fmax(scene->most_turned, contact_passage_turned(&scene->passage, &first));
+  scene->most_turned = (int)fmax(scene->most_turned, contact_passage_turned(&scene->passage).elements);
+}
+
+// The caller's.
+static double *save(const ContactPassage *passage, size_t *size) {
+  *size = sizeof(double) * CONTACT_PASSAGE_KEPT * (size_t)passage->now.count;
+  double *values = malloc(*size + 1);
+  ck_assert_ptr_nonnull(values);
+  contact_passage_save(passage, values);
+  return values;
+}
+
+// A second look at a state finds what the first one found.
+static void look_again(Scene *scene) {
+  size_t size, size_again;
+  double *values = save(&scene->passage, &size);
+  look(scene);
+  double *values_again = save(&scene->passage, &size_again);
+  ck_assert_uint_eq(size_again, size);
+  ck_assert_int_eq(memcmp(values, values_again, size), 0);
+  free(values), free(values_again);
+}
+
+static void accept(Scene *scene) {
+  look(scene);
+  if (scene->looks_again) look_again(scene);
 }
 
 // The last block moves on, in so many steps.
@@ -103,6 +128,32 @@ START_TEST(what_enters_by_a_third_and_comes_back_has_not) {
 }
 END_TEST
 
+// In through the upper side of a plate and out through the lower one, near which it stays for a while, in
+// steps that leave the middle out.
+static void cross_in_jumps(Scene *scene) {
+  blocks_add(&scene->blocks, &(BlockDef){.cell = {0.25, 0.25, 0.15}, .cells = {8, 8, 2}});
+  blocks_add(&scene->blocks,
+             &(BlockDef){.corner = {0.81, 0.77, 0.31}, .cell = {0.4, 0.4, 0.4}, .cells = {1, 1, 1}});
+  scene->margin = 0.5;
+  start(scene);
+  move(scene, 2, (const double[]){0, 0, -0.11});
+  move(scene, 1, (const double[]){0, 0, -0.59});
+  move(scene, 2, (const double[]){0.02, 0, 0});
+  ck_assert_int_gt(scene->passage.now.count, 0);
+  ck_assert_int_eq(scene->most_turned, 0);
+  move(scene, 1, (const double[]){0, 0, 0.09});
+}
+
+START_TEST(what_has_been_deep_inside_turns_however_long_it_stays_near_the_other_side) {
+  Scene scene = {.shape_count = 0};
+  cross_in_jumps(&scene);
+  ck_assert_int_gt(scene.most_turned, 0);
+  move(&scene, 1, (const double[]){0, 0, -0.2});
+  ck_assert_int_gt(scene.passed, 0);
+  destroy(&scene);
+}
+END_TEST
+
 // Two plates of one body with another plate in the gap between them, which is too narrow by a fifth.
 static void start_plate_between(Scene *scene) {
   *scene = (Scene){.shape_count = 0};
@@ -130,6 +181,80 @@ START_TEST(what_lies_between_two_layers_has_not_passed_either) {
   ck_assert_int_eq(scene.most_turned, 0);
   move(&scene, 30, (const double[]){0, 0, 0.7}); // now it does pass, one of them
   ck_assert_int_gt(scene.passed, 0);
+  destroy(&scene);
+}
+END_TEST
+
+START_TEST(a_second_look_at_a_state_changes_nothing) {
+  Scene scene = {.looks_again = true};
+  cross_in_jumps(&scene);
+  destroy(&scene);
+  start_plate_and_block(&scene, 1);
+  scene.looks_again = true;
+  move(&scene, 40, (const double[]){0, 0, -2});
+  ck_assert_int_gt(scene.passed, 0);
+  destroy(&scene);
+  start_plate_between(&scene);
+  scene.looks_again = true;
+  move(&scene, 20, (const double[]){0.1, 0, 0.5});
+  ck_assert_int_gt(scene.most_turned, 0);
+  destroy(&scene);
+}
+END_TEST
+
+// An element that is deep inside, h there, and that has a direction.
+static ContactPassageEntry find_deep(const Scene *scene) {
+  const ContactPassageList *now = &scene->passage.now;
+  for (int i = 0; i < now->count; i++)
+    if (now->entries[i].is_deep && vec3_length(vec3_at(now->entries[i].direction)) > 0)
+      return now->entries[i];
+  ck_abort_msg("no element is deep inside");
+}
+
+// In place of what was accepted.
+static void load(Scene *scene, int count, const ContactPassageEntry *entries) {
+  contact_passage_destroy(&scene->passage);
+  scene->passage.now = (ContactPassageList){.entries = (ContactPassageEntry *)entries, .count = count};
+  size_t size;
+  double *values = save(&scene->passage, &size);
+  scene->passage.now = (ContactPassageList){0};
+  ck_assert_ok(contact_passage_load(&scene->passage, count, values));
+  free(values);
+}
+
+// One came in from beyond and is at its deepest; the other does not know whence, or is at the surface.
+START_TEST(where_parts_become_one_what_may_turn_is_not_forgotten) {
+  Scene scene;
+  start_plate_and_block(&scene, 1);
+  move(&scene, 1, (const double[]){0, 0, -0.3});
+  ContactPassageEntry near = find_deep(&scene), far = near, unknown = near;
+  near.is_deep = false;
+  vec3_store(far.direction, vec3_scale(-1, vec3_at(near.direction)));
+  vec3_store(unknown.direction, (Vec3){0, 0, 0});
+  const ContactPassageEntry lists[][2] = {{far, unknown}, {unknown, far}, {far, near}, {near, far}};
+  for (int k = 0; k < 4; k++) {
+    load(&scene, 2, lists[k]);
+    accept(&scene);
+    ck_assert_int_eq(contact_passage_turned(&scene.passage).elements, 1);
+  }
+  destroy(&scene);
+}
+END_TEST
+
+START_TEST(an_element_counts_once_in_however_many_parts) {
+  Scene scene;
+  start_plate_and_block(&scene, 1);
+  move(&scene, 1, (const double[]){0, 0, -0.3});
+  ContactPassageEntry one = find_deep(&scene), next = one;
+  one.is_turned = next.is_turned = true;
+  next.tet++;
+  load(&scene, 3, (const ContactPassageEntry[]){one, one, next});
+  for (int i = 0; i < 3; i++) scene.passage.now.entries[i].covered = scene.passage.now.entries[i].reach = 1;
+  ck_assert_int_eq(contact_passage_turned(&scene.passage).elements, 2);
+  ck_assert_int_eq(contact_passage_inside(&scene.passage).elements, 2);
+  move(&scene, 1, (const double[]){0, 0, 10});
+  ck_assert_int_eq(scene.passed, 2);
+  ck_assert_int_eq(scene.passage.now.count, 0);
   destroy(&scene);
 }
 END_TEST
@@ -272,6 +397,10 @@ int main(void) {
   tcase_add_test(cases, what_crosses_a_plate_has_passed_in_any_unit);
   tcase_add_test(cases, what_enters_by_a_third_and_comes_back_has_not);
   tcase_add_test(cases, what_lies_between_two_layers_has_not_passed_either);
+  tcase_add_test(cases, what_has_been_deep_inside_turns_however_long_it_stays_near_the_other_side);
+  tcase_add_test(cases, a_second_look_at_a_state_changes_nothing);
+  tcase_add_test(cases, where_parts_become_one_what_may_turn_is_not_forgotten);
+  tcase_add_test(cases, an_element_counts_once_in_however_many_parts);
   tcase_add_test(cases, what_goes_round_a_rim_has_not_passed);
   tcase_add_test(cases, what_slides_far_in_a_step_is_still_known);
   tcase_add_test(cases, what_touches_by_rounding_has_no_direction);
