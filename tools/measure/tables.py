@@ -249,7 +249,7 @@ TABLES = {
     "endurance": Bench([["tests/long/endurance", "3600", "{program}"]], endurance, 3),
     "stepping": Bench([["python/rate_simulation"]], as_told, 2),
     "gradients": Bench([["tools/measure/gradients", "{program}"]], as_told, 1),
-    "hard-scenes": Bench([["tetlap", "stress", "-q", "--scenes", "--overlap", "clip,geo", "--limit", "120", "--json", "{folder}/scenes.json"], ["tools/measure/hard_cases", "{folder}/scenes.json"]], as_told, 15, fails=70),
+    "hard-scenes": Bench([["tetlap", "stress", "-q", "--scenes", "--overlap", "clip,geo", "--json", "{folder}/scenes.json"], ["tools/measure/hard_cases", "{folder}/scenes.json"]], as_told, 15, fails=70),
     "hard-pairs": Bench([["tetlap", "stress", "-q", "--pairs", "--json", "{folder}/pairs.json"], ["tools/measure/hard_cases", "{folder}/pairs.json"]], as_told, 15, fails=70),
     "cubes": Bench([["tests/long/cubes", "{program}"]], cubes, 2),
     "effects": Bench([["tools/measure/frame_cost", "{build}"]], as_told, 2),
