@@ -2,6 +2,7 @@
 #include "app/gradient/answer.h"
 
 #include <math.h>
+#include <stdint.h>
 
 #include "app/gradient/goal.h"
 #include "app/gradient/parameter.h"
@@ -33,6 +34,13 @@ static bool is_taken(const AppGradientAnswer *answer, const FemRunProgress *prog
 }
 
 static const double MEGABYTE = 1e6;
+
+size_t app_gradient_bytes(double megabytes) {
+  double bytes = round(megabytes * MEGABYTE);
+  if (!(megabytes > 0)) return 0;
+  if (!(bytes >= 1)) return 1;
+  return bytes < (double)SIZE_MAX ? (size_t)bytes : SIZE_MAX;
+}
 
 // Refuses a replay that cannot keep so little, else says what it keeps.
 static Status tell(const AppGradientAnswer *answer) {
@@ -69,11 +77,11 @@ Status app_gradient_answer(AppGradientAnswer *answer, const FemModel *model, con
   FemRunOptions run = {.observe = at_step, .observer = answer, .stop = stop};
   *answer = (AppGradientAnswer){0};
   TRY(prepare(answer, model, words));
-  answer->steps.most = (size_t)(words->most_megabytes * MEGABYTE);
+  answer->steps.most = app_gradient_bytes(words->most_megabytes);
   Status status = app_gradient_run(model, &answer->def, &run, &result);
   if (!status && fem_gradient_is_path(model)) status = tell(answer);
   if (!status && fem_gradient_is_path(model))
-    status = fem_path_differentiate(&answer->gradient, model, &answer->def, &answer->steps);
+    status = fem_path_differentiate(&answer->gradient, model, &answer->def, &answer->steps, stop);
   if (!status && !answer->gradient.values)
     status = status_fail(STATUS_SOLVER, "the run ended before a goal was taken: no gradient");
   fem_run_result_destroy(&result);

@@ -27,11 +27,14 @@ typedef struct AppGradientAnswer {
   FemGradient gradient;
 } AppGradientAnswer;
 
-// All that can be refused is refused before the run, STATUS_INPUT. `stop` ends the run. Destroy the answer
-// also after a failure.
+// All that can be refused is refused before the run, STATUS_INPUT. `stop` ends the run and its replay.
+// Destroy the answer also after a failure.
 Status app_gradient_answer(AppGradientAnswer *answer, const FemModel *model, const AppGradientWords *words,
                            const volatile sig_atomic_t *stop);
 void app_gradient_answer_destroy(AppGradientAnswer *answer);
+
+// That a replay may keep, to the nearest and at least 1; 0, what there is, of 0 alone.
+size_t app_gradient_bytes(double megabytes);
 
 // Of contact, what its stiffness does: none, given, kept, follows.
 const char *app_gradient_stiffness(const FemModel *model, const AppGradientWords *words);

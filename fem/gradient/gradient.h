@@ -25,7 +25,7 @@ typedef struct FemGradient {
   double time;        // of the latest state that it was found at [s]
   double unbalanced;  // largest force on an unknown, as a share of the largest on a vertex
   long long switches; // of a path, of vertices between sticking and slipping from step to step
-  double replay_s;    // of a path, processor time of its replay [s]
+  double replay_s;    // of a path, processor time of its replay, with segments that are done again [s]
   double *values;     // g, owned                                            (goal_count)
   double *residuals;  // |∂g/∂x − Jᵀ λ| / |∂g/∂x|, owned                      (goal_count)
   double *mismatches; // |J λ + ∂f/∂x λ| / |J λ|, ∂f/∂x λ by differences of forces; NaN of a path; owned

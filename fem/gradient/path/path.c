@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "fem/gradient/path/start.h"
 #include "fem/model/compliance/compliance.h"
@@ -428,14 +427,13 @@ static Status add_start(Sweep *sweep, int p, FemGradient *gradient) {
 
 static Status replay_and_return(Sweep *sweep, FemGradient *gradient) {
   FemReplay *replay = &sweep->replay;
-  double began = clock_cpu_s();
   TRY(fem_replay_go(replay));
-  gradient->replay_s = clock_cpu_s() - began;
   gradient->unbalanced = replay->worst;
   gradient->switches = replay->switches;
   int first = has_friction(sweep) ? 0 : 1;
   for (int k = replay->steps->count - 1; k >= first; k--)
     TRY(fem_replay_end(replay, k, go_back_to(sweep, k, gradient)));
+  gradient->replay_s = replay->spent_s;
   for (int p = 0; p < sweep->def->parameter_count; p++) {
     add_place(sweep, p, gradient);
     TRY(add_start(sweep, p, gradient));
@@ -528,7 +526,7 @@ static Status check_times(const FemModel *model, const FemGradientDef *def, cons
 }
 
 Status fem_path_differentiate(FemGradient *gradient, const FemModel *model, const FemGradientDef *def,
-                              const FemReplaySteps *steps) {
+                              const FemReplaySteps *steps, const volatile sig_atomic_t *stop) {
   TRY(fem_gradient_create(gradient, def));
   TRY(fem_gradient_check(model, def));
   TRY(fem_path_check(model, def));
@@ -538,6 +536,7 @@ Status fem_path_differentiate(FemGradient *gradient, const FemModel *model, cons
   TRY(check_times(model, def, steps));
   Sweep sweep;
   Status status = create(&sweep, model, def, steps);
+  sweep.replay.system.stop = stop;
   if (!status) status = replay_and_return(&sweep, gradient);
   destroy(&sweep);
   return status;

@@ -24,8 +24,9 @@
 // STATUS_INPUT: what cannot be differentiated in this scene; the message says what and why.
 Status fem_path_check(const FemModel *model, const FemGradientDef *def);
 // STATUS_SOLVER: a step of the replay cannot be balanced, or the adjoint has no solution there; the message
-// says which step. Destroy the gradient also after a failure.
+// says which step. STATUS_INTERRUPTED once `stop`, if it is not NULL, is other than 0. Destroy the gradient
+// also after a failure.
 Status fem_path_differentiate(FemGradient *gradient, const FemModel *model, const FemGradientDef *def,
-                              const FemReplaySteps *steps);
+                              const FemReplaySteps *steps, const volatile sig_atomic_t *stop);
 
 #endif

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/machine/clock.h"
 #include "base/memory.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/effect/contact/stick.h"
@@ -51,6 +52,9 @@ double fem_replay_mass(const FemReplay *replay, int unknown) {
 }
 
 Status fem_replay_end(const FemReplay *replay, int k, Status status) {
+  if (status == STATUS_INTERRUPTED)
+    return status_fail(status, "interrupted at t = %.9g s of the replay: no gradient",
+                       replay->steps->times[k]);
   if (status != STATUS_RETRY) return status;
   char why[512];
   snprintf(why, sizeof why, "%s", status_message());
@@ -388,11 +392,13 @@ static void turn_to(FemReplay *replay, int segment) {
 // From where it begins.
 static Status go_through(FemReplay *replay, bool is_again) {
   int begin = replay->segment * replay->plan.length, last = replay->steps->count - 1;
+  double began = clock_cpu_s();
   TRY(begin_anew(replay, begin));
   for (int k = begin + 1; k <= last && k <= begin + replay->plan.length; k++) {
     TRY(fem_replay_end(replay, k, step(replay, k, is_again)));
     if (k < begin + replay->plan.length && fem_replay_is_anew(replay, k)) TRY(begin_anew(replay, k));
   }
+  replay->spent_s += clock_cpu_s() - began;
   return STATUS_OK;
 }
 

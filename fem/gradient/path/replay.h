@@ -43,6 +43,7 @@ typedef struct FemReplay {
   double *rate;                 // the same, velocities                      (n)
   FemEffectHistory *histories;  // of segments' ends, of steps between (segments + length, effect_count)
   unsigned char *slips;         // 0: apart, 1: sticks, 2: slips             (interfaces, contact vertices)
+  double spent_s;               // processor time of its steps, also where they are done again [s]
   double worst;                 // what is left in a step, as a share of the largest force
   long long switches;           // between sticking and slipping, of vertices from step to step
   double c;                     // of the step that is balanced
@@ -70,7 +71,7 @@ Status fem_replay_factorise(FemReplay *replay, int k);
 // Of step k; before and beyond the steps, and of a static scene, 0.
 FemReplayFormula fem_replay_formula(const FemReplay *replay, int k);
 double fem_replay_mass(const FemReplay *replay, int unknown); // [kg]
-// A failure of step k, with its time; nothing is tried again.
+// A failure of step k, or an interruption, with its time; nothing is tried again.
 Status fem_replay_end(const FemReplay *replay, int k, Status status);
 
 #endif

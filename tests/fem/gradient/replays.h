@@ -77,7 +77,7 @@ static inline void replay(const Asked *asked, const FemReplaySteps *steps, const
                               false,
                               asked->by_weights && with_parameters};
   ck_assert_ok(fem_path_check(&scene.model, &def));
-  ck_assert_ok(fem_path_differentiate(&answer->gradient, &scene.model, &def, steps));
+  ck_assert_ok(fem_path_differentiate(&answer->gradient, &scene.model, &def, steps, NULL));
   scene_close(&scene);
 }
 

@@ -10,8 +10,15 @@ static const char *const scenes[][3] = {{"gradient_motion", "time.end=0.06", "up
                                         {"gradient_damped", "time.end=0.03", "upper"},
                                         {"gradient_rub", "output.frames=70", "lower"}};
 
-static Status answer_within(int scene, size_t bytes, AppGradientAnswer *answer) {
-  static const double MEGABYTE = 1e6;
+// A clock that is read tells how often it was.
+double __wrap_clock_cpu_s(void);
+
+double __wrap_clock_cpu_s(void) {
+  static int reads;
+  return reads++;
+}
+
+static Status answer_within(int scene, double megabytes, AppGradientAnswer *answer) {
   char of[2][64];
   snprintf(of[0], sizeof of[0], "displacement:%s:x", scenes[scene][2]);
   snprintf(of[1], sizeof of[1], "position:upper:3:z@%g", scene == 3 ? 0.5 : 0.01);
@@ -19,7 +26,7 @@ static Status answer_within(int scene, size_t bytes, AppGradientAnswer *answer) 
                                   .by = {"bodies.lower.material.young", "contact.stiffness"},
                                   .of_count = 2,
                                   .by_count = 2,
-                                  .most_megabytes = (double)bytes / MEGABYTE};
+                                  .most_megabytes = megabytes};
   SceneRun run;
   scene_open(&run, scenes[scene][0], (const char *const[]){scenes[scene][1], NULL});
   Status status = app_gradient_answer(answer, &run.model, &words, NULL);
@@ -41,13 +48,15 @@ START_TEST(gradients_are_the_same_with_as_little_memory_as_there_is_a_plan_for) 
   all.steps.most = all.steps.bytes - 1;
   FemReplayPlan plan = fem_replay_steps_plan(&all.steps);
   const size_t mosts[] = {plan.bytes, plan.least};
+  ck_assert_double_eq(all.gradient.replay_s, 1);
   ck_assert_uint_lt(plan.least, all.steps.bytes);
   for (int k = 0; k < 2; k++) {
-    ck_assert_ok(answer_within(_i, mosts[k], &some));
+    ck_assert_ok(answer_within(_i, 1e-6 * (double)mosts[k], &some));
     plan = fem_replay_steps_plan(&some.steps);
     ck_assert_int_ge(plan.segment_count, 2);
     ck_assert_uint_le(plan.bytes, mosts[k]);
     check_same(&all.gradient, &some.gradient);
+    ck_assert_double_eq(some.gradient.replay_s, 2 * plan.segment_count - 1); // all but one twice
     app_gradient_answer_destroy(&some);
   }
   app_gradient_answer_destroy(&all);
@@ -57,17 +66,26 @@ END_TEST
 START_TEST(with_less_it_is_refused_and_says_how_much_is_needed) {
   AppGradientAnswer answer;
   double least = NAN;
-  ck_assert_int_eq(answer_within(_i, 1, &answer), STATUS_INPUT);
+  ck_assert_int_eq(answer_within(_i, 1e-7, &answer), STATUS_INPUT); // no byte, which is not all there is
   const char *told = strstr(status_message(), "keeps ");
   ck_assert_msg(told && strstr(told, "MB at least"), "%s", status_message());
   least = strtod(told + strlen("keeps "), NULL);
   size_t exact = fem_replay_steps_plan(&answer.steps).least;
   app_gradient_answer_destroy(&answer);
-  ck_assert_int_eq(answer_within(_i, exact - 1, &answer), STATUS_INPUT);
+  ck_assert_int_eq(answer_within(_i, 1e-6 * (double)(exact - 1), &answer), STATUS_INPUT);
   app_gradient_answer_destroy(&answer);
   ck_assert_near(least, 1e-6 * (double)exact, 1e-3);
-  ck_assert_ok(answer_within(_i, (size_t)(1e6 * least), &answer)); // as it is told, rounded up
+  ck_assert_ok(answer_within(_i, least, &answer)); // as it is told, rounded up
   app_gradient_answer_destroy(&answer);
+}
+END_TEST
+
+START_TEST(megabytes_are_the_nearest_bytes) {
+  ck_assert_uint_eq(app_gradient_bytes(0), 0);
+  ck_assert_uint_eq(app_gradient_bytes(1.001), 1001000); // 1.001 * 1e6 is less
+  ck_assert_uint_eq(app_gradient_bytes(1e-7), 1);
+  ck_assert_uint_eq(app_gradient_bytes(1.9e13), SIZE_MAX);
+  ck_assert_uint_eq(app_gradient_bytes(INFINITY), SIZE_MAX);
 }
 END_TEST
 
@@ -141,6 +159,7 @@ int main(void) {
                       SCENE_COUNT);
   tcase_add_loop_test(test_case, with_less_it_is_refused_and_says_how_much_is_needed, 0, SCENE_COUNT);
   tcase_add_loop_test(test_case, a_replay_keeps_what_its_plan_says, 0, SCENE_COUNT);
+  tcase_add_test(test_case, megabytes_are_the_nearest_bytes);
   tcase_add_test(test_case, a_short_replay_keeps_all_its_steps);
   return suite_run("gradient_memory", test_case, 120);
 }

@@ -104,7 +104,7 @@ static void refuse(const char *override, const char *by, const char *why) {
   Status status = app_gradient_read_parameter(&scene.model, by, &parameter);
   if (!status)
     status = fem_path_differentiate(&gradient, &scene.model,
-                                    &(FemGradientDef){NULL, &parameter, 0, 1, false, false}, &steps);
+                                    &(FemGradientDef){NULL, &parameter, 0, 1, false, false}, &steps, NULL);
   ck_assert_int_eq(status, STATUS_INPUT);
   ck_assert_msg(strstr(status_message(), why) != NULL, "%s: %s", override, status_message());
   fem_gradient_destroy(&gradient);
