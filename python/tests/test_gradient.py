@@ -100,6 +100,18 @@ class Gradient(unittest.TestCase):
         self.assertAlmostEqual(found["value"][1], ended.history["elastic_J"][-1], delta=0.01 * found["value"][1])
         np.testing.assert_allclose(found["derivative"][:, 0] * 2e3, sides[1] - sides[0], rtol=0.02)
 
+    def test_a_motion_with_as_little_memory_as_is_needed(self):
+        bodies = [{**SCENE["bodies"][0], "fixed": [], "place": {"translate": [0, 0, 0.004]}, "velocity": [0, 0, -0.3]}]
+        scene = {**SCENE, "time": {"end": 0.02, "tolerance": 1e-6}, "bodies": bodies}
+        whole = tetlap.gradient(scene, "energy:elastic", YOUNG)
+        with self.assertRaisesRegex(tetlap.RunError, "MB at least") as refused:
+            tetlap.gradient(scene, "energy:elastic", YOUNG, memory=1e-6)
+        least = float(str(refused.exception).split("keeps ")[1].split()[0])
+        found = tetlap.gradient(scene, "energy:elastic", YOUNG, memory=least)
+        np.testing.assert_array_equal(found["derivative"], whole["derivative"])
+        with self.assertRaisesRegex(tetlap.RunError, "--memory"):
+            tetlap.gradient(scene, "energy:elastic", YOUNG, memory=0)
+
     def test_what_has_no_gradient_says_why(self):
         ball = {"name": "ball", "sphere": {"centre": [0, 0, -1], "radius": 1}}
         with self.assertRaisesRegex(tetlap.RunError, "friction on a sphere"):

@@ -81,7 +81,7 @@ def _read_slopes(folder, count):
 
 
 def gradient(scene: Scene, of: str | list[str], by: str | list[str], *, set: Settings = None, total: bool = False,  # noqa: A002
-             at: float | None = None, check: bool = False, weights: bool = False) -> dict:
+             at: float | None = None, check: bool = False, weights: bool = False, memory: float | None = None) -> dict:
     """Runs a static scene or a motion; what quantities are at its end or at other times, and
     their exact derivatives, as a dict of arrays.
 
@@ -92,6 +92,8 @@ def gradient(scene: Scene, of: str | list[str], by: str | list[str], *, set: Set
     set: as of `tetlap.run`.
     total: a contact stiffness that the scene does not give changes with E and ν as it is chosen from them; else it is kept.
     weights: by the weights of contact.overlap's network, too; `by` may then be empty.
+    memory: what the replay of a motion, or of a scene with friction, may keep [MB]; where it were more, parts are done twice. None: what
+    there is.
 
     value (of): the quantities. derivative (of, by): dq/dp. share (of, by): p dq/dp / q. parameter (by): their values. unit and
     parameter_unit: lists of texts. does_not_act: why a derivative is 0, by key. force_residual, adjoint_residual (of),
@@ -111,6 +113,8 @@ def gradient(scene: Scene, of: str | list[str], by: str | list[str], *, set: Set
         command += ["--set", text]
     if at is not None:
         command += ["--at", repr(float(at))]
+    if memory is not None:
+        command += ["--memory", repr(float(memory))]
     command += ["--total"] * bool(total)
     try:
         if not weights:
