@@ -7,8 +7,8 @@
 
 #include "fem/effect/effect.h"
 #include "fem/effect/system_energy.h"
-#include "fem/measure/thickness.h"
 #include "fem/model/compliance/compliance.h"
+#include "fem/model/compliance/thickness.h"
 #include "fem/run/check/choice.h"
 #include "fem/scene/drive.h"
 

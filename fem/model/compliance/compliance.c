@@ -12,6 +12,7 @@
 #include "fem/model/compliance/blow.h"
 #include "fem/model/compliance/leaf.h"
 #include "fem/model/compliance/patch.h"
+#include "fem/model/compliance/thickness.h"
 #include "fem/model/limits.h"
 #include "fem/model/parts.h"
 
@@ -32,6 +33,7 @@ static const double RESOLVED = 2.2, WIDE = 0.6;
 // Of every body; an obstacle is rigid and has none.
 typedef struct Give {
   FemExtent extent; // its height is L
+  double wall;      // L of an impact: no more than the thickness of what is slender [m]
   double inverse;   // 1/E [1/Pa]
   double give;      // (1 − HELD ν⁴)/E: of what is pressed between faces that hold it [1/Pa]; of several
                     // materials the mean over the volume, and no more than the skin's
@@ -107,6 +109,13 @@ static double give_of_material(const FemMaterial *material) {
   return (1 - HELD * square * square) / material->young;
 }
 
+static Status measure_wall(const FemModel *model, int body, Give *give) {
+  FemThickness found;
+  TRY(fem_thickness_find(model, body, &found));
+  give->wall = found.is_slender ? fmin(give->extent.height, found.thickness) : give->extent.height;
+  return STATUS_OK;
+}
+
 static Status measure_bodies(const FemModel *model, Give *gives) {
   bool *held = memory_zeroed((size_t)model->vertex_count, sizeof *held);
   Status status = held ? STATUS_OK : status_no_memory("the curvature of a body");
@@ -118,6 +127,7 @@ static Status measure_bodies(const FemModel *model, Give *gives) {
   measure_shapes(model, gives);
   for (int b = 0; b < model->scene->body_count; b++) {
     TRY(fem_extent_measure(model, b, &gives[b].extent));
+    TRY(measure_wall(model, b, &gives[b]));
     gives[b].inverse = fem_model_parts_mean(model, b, inverse_of);
     gives[b].skin = fem_model_parts_surface_mean(model, b, give_of_material);
     gives[b].give = fmin(fem_model_parts_mean(model, b, give_of_material), gives[b].skin);
@@ -161,12 +171,11 @@ static double pressure_of(const Give *a, const Give *b, double blow) {
 // than its elements resolve. `terms`: of p = terms · c d.
 static double stiffness_between(const Give *a, const Give *b, double blow, int terms, const Meeting *meeting,
                                 FemComplianceBound *bound) {
-  double sum = give_at(a, b, meeting), height = a->extent.height;
+  double sum = give_at(a, b, meeting), wall = a->wall;
   *bound = FEM_COMPLIANCE_BODIES;
   if (!(sum > 0)) return 1;
-  if (b->extent.height > 0) height = height > 0 ? fmin(height, b->extent.height) : b->extent.height;
-  double stiffness = 1 / (terms * GIVE * sum),
-         struck = pressure_of(a, b, blow) / (terms * BLOW_DEPTH * height);
+  if (b->wall > 0) wall = wall > 0 ? fmin(wall, b->wall) : b->wall;
+  double stiffness = 1 / (terms * GIVE * sum), struck = pressure_of(a, b, blow) / (terms * BLOW_DEPTH * wall);
   if (meeting->layer > GIVE * sum) stiffness = 1 / (terms * meeting->layer), *bound = FEM_COMPLIANCE_ELEMENTS;
   if (meeting->leaf < stiffness) stiffness = meeting->leaf, *bound = FEM_COMPLIANCE_LEAVES;
   if (struck > stiffness) stiffness = struck, *bound = FEM_COMPLIANCE_BLOW;

@@ -13,9 +13,11 @@
 //
 // An impact may compress bodies by as much as their height. Two bodies that store the energy W of the hardest
 // impact of the scene (blow.h) press each other with p = √(2 W / (V_A/E_A + V_B/E_B)), V their volumes.
-// Where it is more than the value above, c is such that this p compresses the interface by 1 % of L. Beyond
-// p = E the bodies would have no height left: they are crushed, and what holds them apart are their edges.
-// An edge of length L that is pressed by d into a half-space stores c L d³/3, into a body 0.57 c L d³. With
+// Where it is more than the value above, c is such that this p compresses the interface by 1 % of L; here L
+// is no more than the thickness of what is slender (thickness.h), behind whose middle nothing pushes back
+// out. Beyond p = E the bodies would have no height left: they are crushed, and what holds them apart are
+// their edges. An edge of length L that is pressed by d into a half-space stores c L d³/3, into a body 0.57 c
+// L d³. With
 //
 //   c = 50 q / L, against a shape without elements 100 q / L,     q = max(p, p²/E), E of the softer one
 //

@@ -5,7 +5,12 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "fem/mesh/mesh.h"
 #include "fem/model/compliance/compliance.h"
+#include "fem/model/compliance/extent.h"
+#include "fem/model/parts.h"
+#include "folder.h"
+#include "medit.h"
 #include "scene.h"
 
 // tests/scenes/cubes.yaml: ten cubes of 0.1 m, E 1e5 Pa, 1 kg, the last one 10 kg; the first 0.01 m above the
@@ -122,6 +127,45 @@ START_TEST(where_blows_are_light_the_press_decides) {
 }
 END_TEST
 
+// A ring about y of the radii .08 and .1 m, two elements thick, with a slit below: a box that is bent.
+enum { ROUND = 24, ACROSS = 2, WIDE = 3 };
+static const double THICK = 0.02;
+
+static void write_ring(const char *path) {
+  FemMesh mesh;
+  ck_assert_ok(fem_mesh_box(&mesh, (double[]){1.96 * M_PI, THICK, 0.05}, (int[]){ROUND, ACROSS, WIDE}));
+  for (int v = 0; v < mesh.vertex_count; v++) {
+    double *x = mesh.rest + 3 * (size_t)v, angle = x[0] - 0.48 * M_PI, radius = 0.08 + x[1];
+    double place[3] = {radius * cos(angle), x[2] - 0.025, radius * sin(angle)};
+    memcpy(x, place, sizeof place);
+  }
+  medit_write(&mesh, path);
+  fem_mesh_destroy(&mesh);
+}
+
+// What is hollow is crushed as a plate of its wall is: the height of the whole says nothing of that.
+START_TEST(a_spike_does_not_pass_the_wall_of_a_ring) {
+  SceneRun run;
+  FemExtent extent;
+  char path[128], mesh[160];
+  snprintf(path, sizeof path, "%s/ring.mesh", folder);
+  snprintf(mesh, sizeof mesh, "bodies.ring.mesh={file: %s}", path);
+  write_ring(path);
+  scene_open(&run, "ring", (const char *const[]){mesh, NULL});
+  double stored = 0, thick = THICK * cos(0.98 * M_PI / ROUND); // between facets
+  for (int b = 0; b < 2; b++)
+    stored += fem_model_parts_volume(&run.model, b) / run.model.parts[b].material.young;
+  ck_assert_ok(fem_extent_measure(&run.model, 0, &extent));
+  ck_assert_double_gt(extent.height, 2 * thick);
+  double expected = 50 * 2 * fem_blow_hardest(&run.model) / stored / YOUNG / thick;
+  ck_assert_near(chosen(&run, 0, 1), expected, 1e-6 * expected);
+  scene_run_from(&run, NULL);
+  ck_assert_str_eq(fem_run_outcome(&run.result, run.status), "finished");
+  ck_assert_int_eq((int)run.result.trouble.of[FEM_TROUBLE_PASSED].steps, 0);
+  scene_close(&run);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("blow");
   tcase_add_test(cases, a_body_strikes_with_what_it_falls);
@@ -131,5 +175,7 @@ int main(void) {
   tcase_add_test(cases, beyond_that_an_edge_holds_the_blow_within_a_quarter_of_the_height);
   tcase_add_test(cases, the_stiffness_has_no_jump_where_the_pressure_is_e);
   tcase_add_test(cases, where_blows_are_light_the_press_decides);
+  tcase_add_checked_fixture(cases, folder_make, folder_remove);
+  tcase_add_test(cases, a_spike_does_not_pass_the_wall_of_a_ring);
   return suite_run("blow", cases, 30);
 }

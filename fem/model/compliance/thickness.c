@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/measure/thickness.h"
+#include "fem/model/compliance/thickness.h"
 
 #include <math.h>
 #include <stdlib.h>

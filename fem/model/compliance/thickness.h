@@ -3,8 +3,8 @@
 // surface inwards along its normal to where the body ends is the thickness there; the height of the
 // triangle's own element over it is a layer. A body counts as slender where that thickness is at most a fifth
 // of its largest extent on at least half of its surface.
-#ifndef TETLAP_FEM_MEASURE_THICKNESS_H
-#define TETLAP_FEM_MEASURE_THICKNESS_H
+#ifndef TETLAP_FEM_MODEL_COMPLIANCE_THICKNESS_H
+#define TETLAP_FEM_MODEL_COMPLIANCE_THICKNESS_H
 
 #include "fem/model/model.h"
 

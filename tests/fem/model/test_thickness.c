@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "fem/measure/thickness.h"
+#include "fem/model/compliance/thickness.h"
 
 static FemThickness find(const char *mesh) {
   SceneRun run;
