@@ -53,14 +53,13 @@ static bool is_deep(const ContactMeeting *meeting, bool has_field) {
 static void meet(ContactPassageEntry *entry, const ContactMeeting *meeting, bool has_field) {
   Vec3 kept = vec3_at(entry->direction), h = direction_of(meeting);
   double length = vec3_length(h), along = vec3_dot(h, kept);
-  bool is_known = vec3_length(kept) > 0, has_been_deep = entry->is_deep && is_known && along <= 0;
+  bool is_known = vec3_length(kept) > 0, is_opposed = is_known && along < -TURNED;
   entry->cell = meeting->cell;
   entry->reach = meeting->reach;
   entry->covered = meeting->covered;
-  bool is_deep_now = is_deep(meeting, has_field);
-  entry->is_deep = is_deep_now || has_been_deep;
+  entry->is_deep = is_deep(meeting, has_field) || (entry->is_deep && is_opposed);
   if (!(meeting->covered >= rounding())) return;
-  if (is_known && along < -TURNED && is_deep_now) entry->is_turned = true;
+  if (is_opposed && entry->is_deep) entry->is_turned = true;
   if (is_known && along > TURNED) entry->is_turned = false;
   bool is_followed = !is_known || (!entry->is_turned && (along > 0 || !entry->is_deep));
   if (length > CLEAR && is_followed) vec3_store(entry->direction, vec3_scale(1 / length, h));

@@ -13,9 +13,10 @@
 // ½ and h turns by less than a right angle: so it does where an element slides round a drum or over an edge,
 // or turns together with B. Near the surface it follows however far h turns, as over a sharp ridge: only an
 // element that has been deep inside can come to the other side by passing through, and that it has been is
-// kept until h turns back to within a right angle. Where h points against the kept direction, the element has
-// gone beyond the middle of B and is pushed out on the other side: it is called turned. An element that
-// leaves B while it is turned has passed through; one that comes back is no longer turned.
+// kept while h is opposed. Where h is opposed to the kept direction, by a component of more than ½, an
+// element that has been deep inside has gone beyond the middle of B and is pushed out on the other side: it
+// is called turned. An element that leaves B while it is turned has passed through; one that comes back is no
+// longer turned.
 //
 // Where B has several layers, or a slot, the element meets parts of it (contact/passage/meetings.h) that
 // press it from opposite sides, now one more and now the other. So h is that of a part, and the element keeps
