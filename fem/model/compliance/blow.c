@@ -88,8 +88,11 @@ static double energy_of(const FemModel *model, const FemModelBody *body, const G
 
 double fem_blow_hardest(const FemModel *model) {
   const Gravity gravity = gravity_of(model);
-  double hardest = 0;
-  for (int b = 0; b < model->scene->body_count; b++)
-    hardest = fmax(hardest, energy_of(model, &model->bodies[b], &gravity));
-  return hardest;
+  double hardest = 0, second = 0;
+  for (int b = 0; b < model->scene->body_count; b++) {
+    double energy = energy_of(model, &model->bodies[b], &gravity);
+    second = fmax(second, fmin(energy, hardest));
+    hardest = fmax(hardest, energy);
+  }
+  return fem_model_floats(model, 0) ? hardest + second : hardest;
 }

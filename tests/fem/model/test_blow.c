@@ -60,6 +60,21 @@ START_TEST(without_gravity_and_speed_nothing_strikes) {
 }
 END_TEST
 
+// Whichever of two moves, they can lose as much to each other, and no more.
+START_TEST(two_that_float_strike_with_what_they_have_to_lose) {
+  SceneRun run;
+  scene_open(&run, "ring", NULL);
+  double masses[2] = {run.model.bodies[0].mass, run.model.bodies[1].mass};
+  expect_near(fem_blow_hardest(&run.model), 800 * masses[0] * masses[1] / (masses[0] + masses[1]));
+  scene_close(&run);
+  scene_open(
+      &run, "ring",
+      (const char *const[]){"bodies.ring.velocity=[3, 0, 60]", "bodies.spike.velocity=[3, 0, 20]", NULL});
+  expect_near(fem_blow_hardest(&run.model), 800 * masses[0] * masses[1] / (masses[0] + masses[1]));
+  scene_close(&run);
+}
+END_TEST
+
 static double chosen(const SceneRun *run, int a, int b) {
   FemCompliance choice;
   ck_assert_ok(fem_compliance_choose(&run->model, &choice));
@@ -171,6 +186,7 @@ int main(void) {
   tcase_add_test(cases, a_body_strikes_with_what_it_falls);
   tcase_add_test(cases, it_falls_no_farther_than_until_the_end);
   tcase_add_test(cases, without_gravity_and_speed_nothing_strikes);
+  tcase_add_test(cases, two_that_float_strike_with_what_they_have_to_lose);
   tcase_add_test(cases, a_blow_presses_the_interface_by_a_hundredth_of_the_height);
   tcase_add_test(cases, beyond_that_an_edge_holds_the_blow_within_a_quarter_of_the_height);
   tcase_add_test(cases, the_stiffness_has_no_jump_where_the_pressure_is_e);
