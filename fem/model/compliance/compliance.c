@@ -109,14 +109,15 @@ static double give_of_material(const FemMaterial *material) {
   return (1 - HELD * square * square) / material->young;
 }
 
-static Status measure_wall(const FemModel *model, int body, Give *give) {
-  FemThickness found;
-  TRY(fem_thickness_find(model, body, &found));
+// Rays through all faces: not where nothing strikes.
+static Status measure_wall(const FemModel *model, int body, double blow, Give *give) {
+  FemThickness found = {.is_slender = false};
+  if (blow > 0) TRY(fem_thickness_find(model, body, &found));
   give->wall = found.is_slender ? fmin(give->extent.height, found.thickness) : give->extent.height;
   return STATUS_OK;
 }
 
-static Status measure_bodies(const FemModel *model, Give *gives) {
+static Status measure_bodies(const FemModel *model, double blow, Give *gives) {
   bool *held = memory_zeroed((size_t)model->vertex_count, sizeof *held);
   Status status = held ? STATUS_OK : status_no_memory("the curvature of a body");
   for (int b = 0; b < model->body_count && !status; b++)
@@ -127,7 +128,7 @@ static Status measure_bodies(const FemModel *model, Give *gives) {
   measure_shapes(model, gives);
   for (int b = 0; b < model->scene->body_count; b++) {
     TRY(fem_extent_measure(model, b, &gives[b].extent));
-    TRY(measure_wall(model, b, &gives[b]));
+    TRY(measure_wall(model, b, blow, &gives[b]));
     gives[b].inverse = fem_model_parts_mean(model, b, inverse_of);
     gives[b].skin = fem_model_parts_surface_mean(model, b, give_of_material);
     gives[b].give = fmin(fem_model_parts_mean(model, b, give_of_material), gives[b].skin);
@@ -422,8 +423,8 @@ static Status choose(const FemModel *model, Give *gives, FemCompliance *choice) 
   for (size_t k = 0; k < count; k++) choice->stiffness[k] = fem_model_contact_stiffness(model);
   Course course = {0};
   if (is_field) {
-    TRY(measure_bodies(model, gives));
     course = (Course){.blow = fem_blow_hardest(model), .travel = farthest_travel(model)};
+    TRY(measure_bodies(model, course.blow, gives));
   }
   if (is_field && !(contact->stiffness > 0)) choose_for_field(model, gives, &course, choice);
   TRY(apply_pairs(model, choice));
