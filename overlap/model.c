@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "overlap/ops.h"
 #include "overlap/pair/centroid.h"
 #include "overlap/portions.h"
 #include "overlap/separation.h"
@@ -31,12 +32,6 @@ bool overlap_model_wants_origins(const OverlapModel *model) {
 void overlap_model_destroy(OverlapModel *model) {
   if (model->ops && model->ops->destroy) model->ops->destroy(model->self);
   *model = (OverlapModel){0};
-}
-
-static bool is_finite(const double pair[OVERLAP_PAIR_SIZE]) {
-  bool are_finite = true;
-  for (int i = 0; i < OVERLAP_PAIR_SIZE; i++) are_finite &= isfinite(pair[i]);
-  return are_finite;
 }
 
 enum { BLOCK = 64 }; // pairs looked through at once
@@ -68,7 +63,8 @@ static int first_not_finite(const OverlapBatch *batch) {
     const int left = batch->pair_count - begin, count = left < BLOCK ? left : BLOCK;
     if (have_finite_sum(count, pairs)) continue;
     for (int i = 0; i < count; i++)
-      if (!is_finite(pairs + i * OVERLAP_PAIR_SIZE) && begin + i < first) first = begin + i;
+      if (!overlap_ops_are_finite(OVERLAP_PAIR_SIZE, pairs + i * OVERLAP_PAIR_SIZE) && begin + i < first)
+        first = begin + i;
   }
   return first;
 }

@@ -299,6 +299,7 @@ START_TEST(what_slides_far_in_a_step_is_still_known) {
     move(&scene, 4, (const double[]){0, 0, -0.05});
     ck_assert_int_gt(scene.passage.now.count, 0);
     move(&scene, 1, (const double[]){1.2, 0, -0.5});
+    ck_assert_int_gt(scene.passage.now.count, 0);
     ck_assert(k == 0 ? scene.most_turned > 0 : scene.most_turned == 0);
     destroy(&scene);
   }

@@ -109,7 +109,7 @@ static double give_of_material(const FemMaterial *material) {
   return (1 - HELD * square * square) / material->young;
 }
 
-// Rays through all faces: not where nothing strikes.
+// Rays through all faces: not where nothing strikes, or c is given.
 static Status measure_wall(const FemModel *model, int body, double blow, Give *give) {
   FemThickness found = {.is_slender = false};
   if (blow > 0) TRY(fem_thickness_find(model, body, &found));
@@ -424,7 +424,7 @@ static Status choose(const FemModel *model, Give *gives, FemCompliance *choice) 
   Course course = {0};
   if (is_field) {
     course = (Course){.blow = fem_blow_hardest(model), .travel = farthest_travel(model)};
-    TRY(measure_bodies(model, course.blow, gives));
+    TRY(measure_bodies(model, contact->stiffness > 0 ? 0 : course.blow, gives));
   }
   if (is_field && !(contact->stiffness > 0)) choose_for_field(model, gives, &course, choice);
   TRY(apply_pairs(model, choice));

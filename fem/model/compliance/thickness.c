@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/surface/surface.h"
+#include "fem/model/compliance/extent.h"
 
 enum { MOST_SAMPLES = 400 };
 static const double SLENDER = 5, MOSTLY = 0.5;
@@ -48,19 +49,6 @@ static Sample measure_sample(const FemModel *model, const ContactSurface *surfac
   return sample;
 }
 
-static double largest_extent(const FemModel *model, const FemModelBody *body) {
-  double extent = 0;
-  for (int c = 0; c < 3; c++) {
-    double least = INFINITY, most = -INFINITY;
-    for (int a = body->vertex_begin; a < body->vertex_end; a++) {
-      least = fmin(least, model->rest[3 * a + c]);
-      most = fmax(most, model->rest[3 * a + c]);
-    }
-    extent = fmax(extent, most - least);
-  }
-  return extent;
-}
-
 static int by_thickness(const void *a, const void *b) {
   double p = ((const Sample *)a)->thickness, q = ((const Sample *)b)->thickness;
   return (p > q) - (p < q);
@@ -80,12 +68,12 @@ static const Sample *median(const Sample *samples, int count) {
   return &samples[count - 1];
 }
 
-static void find_medians(Sample *samples, int count, double extent, FemThickness *thickness) {
+static void find_medians(Sample *samples, int count, double length, FemThickness *thickness) {
   double all = 0, thin = 0;
   int kept = 0;
   for (int i = 0; i < count; i++) {
     all += samples[i].area;
-    if (!(samples[i].thickness <= extent / SLENDER)) continue;
+    if (!(samples[i].thickness <= length / SLENDER)) continue;
     thin += samples[i].area;
     samples[kept++] = samples[i];
   }
@@ -100,13 +88,15 @@ static void find_medians(Sample *samples, int count, double extent, FemThickness
 Status fem_thickness_find(const FemModel *model, int body, FemThickness *thickness) {
   const FemModelBody *range = &model->bodies[body];
   ContactSurface surface;
+  FemExtent extent;
   *thickness = (FemThickness){0};
+  TRY(fem_extent_measure(model, body, &extent));
   TRY(contact_surface_find(&surface, (const int(*)[4])model->tets, range->tet_begin, range->tet_end));
   int count = surface.count < MOST_SAMPLES ? surface.count : MOST_SAMPLES;
   Sample *samples = memory_zeroed((size_t)count, sizeof *samples);
   for (int i = 0; samples && i < count; i++)
     samples[i] = measure_sample(model, &surface, (int)((long long)i * surface.count / count));
-  if (samples) find_medians(samples, count, largest_extent(model, range), thickness);
+  if (samples) find_medians(samples, count, extent.length, thickness);
   memory_free(samples);
   contact_surface_destroy(&surface);
   return samples ? STATUS_OK : status_no_memory("the thickness of a body");

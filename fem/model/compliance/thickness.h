@@ -2,7 +2,7 @@
 // How many elements lie through the thickness of a body that bends. From the middle of a triangle of the
 // surface inwards along its normal to where the body ends is the thickness there; the height of the
 // triangle's own element over it is a layer. A body counts as slender where that thickness is at most a fifth
-// of its largest extent on at least half of its surface.
+// of its length (extent.h) on at least half of its surface, however it is turned.
 #ifndef TETLAP_FEM_MODEL_COMPLIANCE_THICKNESS_H
 #define TETLAP_FEM_MODEL_COMPLIANCE_THICKNESS_H
 

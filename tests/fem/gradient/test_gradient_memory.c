@@ -65,11 +65,10 @@ END_TEST
 
 START_TEST(with_less_it_is_refused_and_says_how_much_is_needed) {
   AppGradientAnswer answer;
-  double least = NAN;
   ck_assert_int_eq(answer_within(_i, 1e-7, &answer), STATUS_INPUT); // no byte, which is not all there is
   const char *told = strstr(status_message(), "keeps ");
   ck_assert_msg(told && strstr(told, "MB at least"), "%s", status_message());
-  least = strtod(told + strlen("keeps "), NULL);
+  const double least = strtod(told + strlen("keeps "), NULL);
   size_t exact = fem_replay_steps_plan(&answer.steps).least;
   app_gradient_answer_destroy(&answer);
   ck_assert_int_eq(answer_within(_i, 1e-6 * (double)(exact - 1), &answer), STATUS_INPUT);

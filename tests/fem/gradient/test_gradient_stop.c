@@ -3,7 +3,7 @@
 #include "app/gradient/answer.h"
 #include "replays.h"
 
-// The step before whose return it is wished; −1: before the replay. And how many steps were gone back over.
+// The step after whose return it is wished; −1: before the replay. And how many steps were gone back over.
 static int wished_at, returned;
 static volatile sig_atomic_t stop;
 

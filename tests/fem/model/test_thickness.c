@@ -6,15 +6,19 @@
 
 #include "fem/model/compliance/thickness.h"
 
-static FemThickness find(const char *mesh) {
+static FemThickness find_turned(const char *mesh, const char *place) {
   SceneRun run;
   char set[160];
   FemThickness thickness;
   snprintf(set, sizeof set, "bodies.block.mesh=%s", mesh);
-  scene_open(&run, "free_fall", (const char *const[]){set, NULL});
+  scene_open(&run, "free_fall", (const char *const[]){set, place, NULL});
   ck_assert_ok(fem_thickness_find(&run.model, 0, &thickness));
   scene_close(&run);
   return thickness;
+}
+
+static FemThickness find(const char *mesh) {
+  return find_turned(mesh, NULL);
 }
 
 START_TEST(a_thin_plate_is_slender_and_its_layers_are_counted) {
@@ -36,6 +40,14 @@ START_TEST(a_beam_is_slender_across) {
   ck_assert(thickness.is_slender);
   ck_assert_near(thickness.thickness, 0.05, 1e-9);
   ck_assert_near(thickness.layers, 2, 1e-9);
+}
+END_TEST
+
+// Along (1, 1, 1), where the box round it is shorter: 5.2 times as long as thick, and 4.8 times.
+START_TEST(a_beam_is_as_slender_however_it_is_turned) {
+  const char *const place = "bodies.block.place={rotate: {axis: [0, -1, 1], degrees: 54.7356}}";
+  ck_assert(find_turned("{box: {size: [0.52, 0.1, 0.1], cells: [10, 2, 2]}}", place).is_slender);
+  ck_assert(!find_turned("{box: {size: [0.48, 0.1, 0.1], cells: [10, 2, 2]}}", place).is_slender);
 }
 END_TEST
 
@@ -75,6 +87,7 @@ int main(void) {
   TCase *cases = tcase_create("thickness");
   tcase_add_test(cases, a_thin_plate_is_slender_and_its_layers_are_counted);
   tcase_add_test(cases, a_beam_is_slender_across);
+  tcase_add_test(cases, a_beam_is_as_slender_however_it_is_turned);
   tcase_add_test(cases, a_block_is_not_slender_however_coarse);
   tcase_add_test(cases, check_says_what_to_do_about_it);
   return suite_run("thickness", cases, 30);

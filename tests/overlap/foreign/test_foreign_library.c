@@ -368,11 +368,12 @@ START_TEST(such_volumes_end_a_run_or_are_counted_as_asked) {
 END_TEST
 
 START_TEST(a_run_of_such_volumes_has_trouble) {
-  char text[20000], words[1000];
+  char text[20000], folder[] = "/tmp/tetlap-foreign-XXXXXX", words[1000];
+  ck_assert_ptr_nonnull(mkdtemp(folder));
   snprintf(words, sizeof words,
            "run %s/examples/02_two_blocks.yaml --set time.end=0.1 --set output.vtu=false --overlap %s -o "
-           "/tmp/tetlap-foreign-trouble; rm -r /tmp/tetlap-foreign-trouble",
-           TETLAP_SOURCE_DIR, TETLAP_MODEL_8);
+           "%s; rm -r %s",
+           TETLAP_SOURCE_DIR, TETLAP_MODEL_8, folder, folder);
   run_program(words, text);
   const char *trouble = strstr(text, "trouble:");
   ck_assert_msg(trouble && strstr(trouble, "strict="), "%s", text);
