@@ -319,4 +319,4 @@ def per(summary, phase, count):
 
 def rank_most(summary, name):
     told = (summary.get("ranks") or {}).get(name)
-    return told["max"] if told else summary[name]
+    return told["most"] if told else summary[name]
