@@ -129,13 +129,14 @@ static void count_retry(FemRunResult *result, FemCause cause) {
 }
 
 // Back to the last accepted state with a smaller step.
-static Status try_again(FemRunState *run, const FemVerdict *verdict) {
+static Status try_again(FemRunState *run, const Proposal *proposal, const FemVerdict *verdict) {
   bool has_message = verdict->cause == FEM_CAUSE_FORCES;
   if (verdict->step == 0) return STATUS_RETRY; // the message says why
   log_debug("t = %.9g s: a step of %.3g s is taken back: %s", run->time,
             fem_integrator_stats(run->integrator).last_step,
             has_message ? status_message() : fem_verdict_words(verdict->cause));
   count_retry(run->result, verdict->cause);
+  if (verdict->cause == FEM_CAUSE_ENERGY) fem_audit_refuse(&run->audit, &proposal->audit);
   return fem_integrator_restart(run->integrator, run->time, run->u, run->v, verdict->step);
 }
 
@@ -161,7 +162,7 @@ static void keep_state(FemRunState *run, double time) {
 
 static Status commit(FemRunState *run, Proposal *proposal) {
   TRY(fem_recorder_append_step(&run->recorder));
-  run->audit = proposal->audit;
+  fem_audit_accept(&run->audit, &proposal->audit);
   keep_state(run, proposal->time);
   fem_run_frames_keep_extremes(run->result, &proposal->measures);
   FemIntegratorStats stats = fem_run_state_stats(run);
@@ -181,7 +182,7 @@ static Status advance(FemRunState *run) {
     TRY(show(run, &proposal));
     if (!proposal.is_evaluated) verdict = judge(run, &proposal);
   }
-  return verdict.stands ? commit(run, &proposal) : try_again(run, &verdict);
+  return verdict.stands ? commit(run, &proposal) : try_again(run, &proposal, &verdict);
 }
 
 Status fem_run_step_advance(FemRunState *run) {

@@ -90,12 +90,33 @@ bool fem_audit_is_doubtful(const FemAuditBounds *bounds, const FemAudit *before,
   return !(after->total - before->total <= FEM_ENERGY_STEP * fmax(after->scale, bounds->least));
 }
 
+// With which the step between the two gains energy [W].
+static double power_of(const FemAudit *before, const FemAudit *after) {
+  return (after->total - before->total) / (after->time - before->time);
+}
+
 bool fem_audit_is_refused(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after) {
   const double scale = fmax(after->scale, bounds->least);
   double of_step = (after->total - before->total) / scale;
   double of_run = (after->total - before->lowest) / scale;
   bool is_held = of_run <= bounds->near || of_step <= FEM_ENERGY_STEP;
-  return !is_held;
+  return !is_held && !(power_of(before, after) <= 2 * before->own_power);
+}
+
+void fem_audit_refuse(FemAudit *audit, const FemAudit *refused) {
+  if (audit->refused_step > 0) return;
+  audit->refused_power = power_of(audit, refused);
+  audit->refused_step = refused->time - audit->time;
+}
+
+void fem_audit_accept(FemAudit *audit, const FemAudit *next) {
+  const double power = power_of(audit, next), step = next->time - audit->time;
+  double own = power > 0 ? audit->own_power : 0;
+  bool is_short = step * (1 - FEM_ROUNDING) <= FEM_CUT * FEM_CUT * audit->refused_step;
+  if (is_short && power >= 0.5 * audit->refused_power) own = power;
+  *audit = *next;
+  audit->own_power = own;
+  audit->refused_power = audit->refused_step = 0;
 }
 
 double fem_audit_lost(const FemAudit *audit) {

@@ -11,6 +11,12 @@
 // The bounds are those of fem/model/limits.h. With contact a step is refused if it gains energy beyond
 // rounding once the run's gain is near its bound. A run that gains more than its bound is trouble
 // (fem/output/trouble.h).
+//
+// Forces that are not the gradient of the energy, as a learned model's may be, give a power of their own,
+// however short the steps are; what an integrator errs by falls faster than the step. So where the step that
+// stands in the end, after FEM_CUT² of the length or less, gains with at least half of the power of the
+// longest that was refused from the same state, this is the forces' own power, and steps that gain with up
+// to twice as much are not refused, until one gains nothing.
 #ifndef TETLAP_FEM_TIME_AUDIT_H
 #define TETLAP_FEM_TIME_AUDIT_H
 
@@ -36,10 +42,13 @@ typedef struct FemAudit {
   double scale;       // the scene's energy: largest of its parts so far, gravity from its start, without that
                       // of the common velocity (fem/model/floating.h) [J]
   double gravity_at_start;
-  double dissipated_at_start; // by plasticity and friction, in the run whose end state this one starts from [J]
+  // By plasticity and friction, in the run whose end state this one starts from [J].
+  double dissipated_at_start;
   double dissipated_power, driven_power; // at `time` [W]
   double open;                           // of a static scene: fem_audit_load_step [J]
   double load_change;                    // of its last step of load [J/s²]
+  double own_power;                      // of the forces; 0: none is known [W]
+  double refused_power, refused_step;    // of the longest step refused since `time`; 0: none [W], [s]
 } FemAudit;
 
 // `floor` [J]: what the scale is at least, so that rounding in a scene at rest is no gain.
@@ -69,6 +78,11 @@ bool fem_audit_is_doubtful(const FemAuditBounds *bounds, const FemAudit *before,
 
 // Whether the step between the two must be taken back.
 bool fem_audit_is_refused(const FemAuditBounds *bounds, const FemAudit *before, const FemAudit *after);
+
+// The step between `audit` and `refused` is taken back for its energy.
+void fem_audit_refuse(FemAudit *audit, const FemAudit *refused);
+// That between `audit` and `next` stands.
+void fem_audit_accept(FemAudit *audit, const FemAudit *next);
 
 // What the integrator itself has lost since the start at most, apart from all damping that was asked for [J];
 // at least it is `uncertain` less. Negative: gained.

@@ -48,6 +48,9 @@ static const FemCheckpointNumber numbers[] = {
     AUDIT(driven_power, "W"),
     AUDIT(open, "J"),
     AUDIT(load_change, "J/s2"),
+    AUDIT(own_power, "W"),
+    AUDIT(refused_power, "W"),
+    AUDIT(refused_step, "s"),
     PART(cost, wall_s, FEM_REAL, "s"),
     PART(cost, cpu_s, FEM_REAL, "s"),
     PART(cost, work_s, FEM_REAL, "s"),
@@ -136,7 +139,7 @@ static const FemCheckpointNumber numbers[] = {
 #undef AT
 
 // Whoever adds a number to one of these adds it to the list above.
-static_assert(sizeof(FemAudit) == 17 * sizeof(double), "numbers[] lists every number of FemAudit");
+static_assert(sizeof(FemAudit) == 20 * sizeof(double), "numbers[] lists every number of FemAudit");
 static_assert(sizeof(FemRunPhases) == 15 * sizeof(double), "numbers[] lists every phase");
 static_assert(sizeof(FemIntegratorStats) == 10 * sizeof(double), "numbers[] lists the integrator's counts");
 static_assert(sizeof(FemSolverStats) == 11 * sizeof(double), "numbers[] lists the solver's counts");

@@ -193,6 +193,18 @@ START_TEST(a_common_velocity_along_a_plane_changes_nothing) {
 }
 END_TEST
 
+// The forces of a small network give energy while little of it is in the scene: without a way out the run
+// creeps in steps of a millionth of a second.
+START_TEST(what_a_learned_volume_gains_by_itself_makes_no_steps_short) {
+  SceneRun run;
+  scene_run(&run, "../../examples/precision/press", (const char *const[]){"contact.overlap=geo-small", NULL});
+  ck_assert_int_gt(run.result.retries.energy, 0);
+  ck_assert_int_le(run.result.retries.energy, run.result.integrator.steps / 10);
+  ck_assert_double_le(scene_gain(&run), 1e-3);
+  scene_close(&run);
+}
+END_TEST
+
 // The first search, before any step, is longer than all other contact.
 START_TEST(no_phase_of_a_run_takes_less_than_no_time) {
   SceneRun run;
@@ -216,6 +228,7 @@ int main(void) {
   tcase_add_test(cases, a_tolerance_that_the_scene_gives_is_all_there_is);
   tcase_add_test(cases, a_common_velocity_of_bodies_that_float_changes_nothing);
   tcase_add_test(cases, a_common_velocity_along_a_plane_changes_nothing);
+  tcase_add_test(cases, what_a_learned_volume_gains_by_itself_makes_no_steps_short);
   tcase_add_test(cases, no_phase_of_a_run_takes_less_than_no_time);
   return suite_run("steps", cases, 120);
 }

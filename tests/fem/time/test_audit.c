@@ -162,6 +162,52 @@ START_TEST(a_gain_is_doubtful_beyond_what_a_step_may_always_gain) {
 }
 END_TEST
 
+// A step of `length` that gains with `power`, from where the audit stands.
+static FemAudit gaining(const FemAudit *audit, double length, double power) {
+  FemAudit next = *audit;
+  next.time += length;
+  next.total += length * power;
+  return next;
+}
+
+// Steps that gain with a power which does not fall with their length are not refused, once that is known.
+START_TEST(what_forces_give_by_themselves_is_not_cut_down) {
+  const FemAuditBounds bounds = fem_audit_bounds(true, 0);
+  const double shorter = FEM_CUT * FEM_CUT, power = 1e-2;
+  FemAudit run = {.scale = 1, .total = FEM_ENERGY, .lowest = 0};
+  FemAudit long_one = gaining(&run, 1, power);
+  ck_assert(fem_audit_is_refused(&bounds, &run, &long_one));
+  // Only the longest counts; one cut tells nothing; nor does what falls with the step.
+  struct Case {
+    double length, power;
+    bool is_own;
+  } cases[] = {{FEM_CUT, power, false},          {1.01 * shorter, power, false},
+               {shorter, 0.49 * power, false},   {shorter, 0.51 * power, true},
+               {FEM_CUT * shorter, power, true}, {shorter, 5 * power, true}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    FemAudit audit = run, middle = gaining(&run, FEM_CUT, power);
+    fem_audit_refuse(&audit, &long_one);
+    fem_audit_refuse(&audit, &middle);
+    FemAudit next = gaining(&audit, cases[i].length, cases[i].power);
+    fem_audit_accept(&audit, &next);
+    ck_assert_double_eq(audit.total, next.total);
+    ck_assert_double_eq(audit.refused_step, 0);
+    ck_assert_near(audit.own_power, cases[i].is_own ? cases[i].power : 0, 1e-12);
+  }
+  // Twice as much stands, more does not; after a step that gains nothing neither does.
+  run.own_power = power;
+  FemAudit less = gaining(&run, 1, 1.99 * power), more = gaining(&run, 1, 2.01 * power);
+  ck_assert(!fem_audit_is_refused(&bounds, &run, &less));
+  ck_assert(fem_audit_is_refused(&bounds, &run, &more));
+  FemAudit held = run, still = gaining(&run, 1, 0);
+  fem_audit_accept(&held, &less);
+  ck_assert_double_eq(held.own_power, power);
+  fem_audit_accept(&run, &still);
+  ck_assert_double_eq(run.own_power, 0);
+  ck_assert(fem_audit_is_refused(&bounds, &run, &less));
+}
+END_TEST
+
 // What steps may use up lies within what the run promises; without contact the promise is twenty times as
 // wide.
 START_TEST(bounds_of_steps_keep_the_promises_of_runs) {
@@ -178,6 +224,7 @@ END_TEST
 int main(void) {
   TCase *cases = tcase_create("audit");
   tcase_add_test(cases, a_step_is_refused_where_it_and_the_run_gain_more_than_their_bounds);
+  tcase_add_test(cases, what_forces_give_by_themselves_is_not_cut_down);
   tcase_add_test(cases, a_gain_is_doubtful_beyond_what_a_step_may_always_gain);
   tcase_add_test(cases, bounds_of_steps_keep_the_promises_of_runs);
   tcase_add_test(cases, of_a_swing_next_to_nothing_is_lacking);
