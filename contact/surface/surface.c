@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "contact/limits.h"
 #include "contact/shape/triangle.h"
 
 // ---- The faces.
@@ -178,4 +179,58 @@ double contact_surface_distance(const ContactSurface *surface, Vec3 x) {
     stack[count++] = children[second_is_nearer];
   }
   return sqrt(nearest);
+}
+
+// ---- Rays.
+
+typedef struct Ray {
+  Vec3 x, d;
+  double slack; // by which boxes are grown, for rounding [m]
+} Ray;
+
+// From where on the ray is in the box; INFINITY: nowhere.
+static double enter(const double box[6], const Ray *ray) {
+  const double x[3] = {ray->x.x, ray->x.y, ray->x.z}, d[3] = {ray->d.x, ray->d.y, ray->d.z};
+  double from = 0, to = INFINITY;
+  for (int c = 0; c < 3; c++) {
+    double low = (box[c] - ray->slack - x[c]) / d[c], high = (box[c + 3] + ray->slack - x[c]) / d[c];
+    from = fmax(from, fmin(low, high)), to = fmin(to, fmax(low, high));
+  }
+  return from <= to ? from : INFINITY;
+}
+
+// Where the ray meets the triangle: t, INFINITY: nowhere (Möller and Trumbore 1997).
+static double meet_face(const ContactSurface *surface, const ContactSurfaceFace *face, const Ray *ray) {
+  Vec3 x[3];
+  for (int v = 0; v < 3; v++) x[v] = vec3_at(surface->rest + 3 * (size_t)face->vertices[v]);
+  Vec3 ab = vec3_sub(x[1], x[0]), ac = vec3_sub(x[2], x[0]), p = vec3_cross(ray->d, ac),
+       arm = vec3_sub(ray->x, x[0]);
+  double det = vec3_dot(ab, p);
+  if (det == 0) return INFINITY;
+  Vec3 q = vec3_cross(arm, ab);
+  double u = vec3_dot(arm, p) / det, v = vec3_dot(ray->d, q) / det, t = vec3_dot(ac, q) / det;
+  bool is_within = u >= -CONTACT_ROUNDING && v >= -CONTACT_ROUNDING && u + v <= 1 + CONTACT_ROUNDING;
+  return is_within && t > 0 ? t : INFINITY;
+}
+
+double contact_surface_meet(const ContactSurface *surface, const ContactSurfaceFace *besides, Vec3 x,
+                            Vec3 d) {
+  int stack[STACK_SIZE], count = 0;
+  double first = INFINITY;
+  if (!(surface->count > 0)) return first;
+  const double *all = surface->boxes[0];
+  int side = longest_side(all);
+  Ray ray = {.x = x, .d = d, .slack = CONTACT_ROUNDING * (all[side + 3] - all[side])};
+  for (stack[count++] = 0; count > 0;) {
+    int node = stack[--count];
+    if (!(enter(surface->boxes[node], &ray) < first)) continue;
+    const int *children = surface->children[node], *range = surface->ranges[node];
+    for (int f = range[0]; f < range[1] && children[0] < 0; f++) {
+      const ContactSurfaceFace *face = &surface->faces[f];
+      if (face->tet != besides->tet || face->corner != besides->corner)
+        first = fmin(first, meet_face(surface, face, &ray));
+    }
+    for (int k = 0; k < 2 && children[0] >= 0; k++) stack[count++] = children[k];
+  }
+  return first;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The surface of a body at rest: the faces that only one of its tetrahedra has, and how far points are from
-// them. Distances are found in a tree of boxes over the triangles.
+// The surface of a body at rest: the faces that only one of its tetrahedra has, how far points are from them,
+// and where rays meet them. Both are found in a tree of boxes over the triangles.
 #ifndef TETLAP_CONTACT_SURFACE_SURFACE_H
 #define TETLAP_CONTACT_SURFACE_SURFACE_H
 
@@ -34,5 +34,9 @@ Status contact_surface_index(ContactSurface *surface, const double *rest);
 
 // How far x is from the nearest face [m]; INFINITY without faces.
 double contact_surface_distance(const ContactSurface *surface, Vec3 x);
+
+// The least t > 0 at which the ray x + t d meets a face other than `besides`, d of length 1; INFINITY: it
+// meets none. What meets an edge, to rounding, meets its faces.
+double contact_surface_meet(const ContactSurface *surface, const ContactSurfaceFace *besides, Vec3 x, Vec3 d);
 
 #endif

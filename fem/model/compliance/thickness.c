@@ -21,19 +21,8 @@ static Vec3 place(const FemModel *model, int vertex) {
   return vec3_at(model->rest + 3 * (size_t)vertex);
 }
 
-// Where the ray x + t d meets the triangle: t, INFINITY: nowhere (Möller and Trumbore 1997).
-static double meet(const FemModel *model, const int vertices[3], Vec3 x, Vec3 d) {
-  Vec3 a = place(model, vertices[0]), ab = vec3_sub(place(model, vertices[1]), a),
-       ac = vec3_sub(place(model, vertices[2]), a), p = vec3_cross(d, ac), arm = vec3_sub(x, a);
-  double det = vec3_dot(ab, p);
-  if (det == 0) return INFINITY;
-  Vec3 q = vec3_cross(arm, ab);
-  double u = vec3_dot(arm, p) / det, v = vec3_dot(d, q) / det, t = vec3_dot(ac, q) / det;
-  return u >= 0 && v >= 0 && u + v <= 1 && t > 0 ? t : INFINITY;
-}
-
-static Sample measure_sample(const FemModel *model, const ContactSurface *surface, int f) {
-  const ContactSurfaceFace *face = &surface->faces[f];
+static Sample measure_sample(const FemModel *model, const ContactSurface *surface,
+                             const ContactSurfaceFace *face) {
   Vec3 a = place(model, face->vertices[0]), b = place(model, face->vertices[1]),
        c = place(model, face->vertices[2]), apex = place(model, model->tets[face->tet][face->corner]);
   Vec3 cross = vec3_cross(vec3_sub(b, a), vec3_sub(c, a)),
@@ -41,10 +30,8 @@ static Sample measure_sample(const FemModel *model, const ContactSurface *surfac
   Vec3 inwards = vec3_scale(1 / vec3_length(cross), cross);
   double height = vec3_dot(inwards, vec3_sub(apex, a));
   if (height < 0) inwards = vec3_scale(-1, inwards), height = -height;
-  Sample sample = {.area = 0.5 * vec3_length(cross), .thickness = INFINITY};
-  for (int g = 0; g < surface->count; g++)
-    if (g != f)
-      sample.thickness = fmin(sample.thickness, meet(model, surface->faces[g].vertices, middle, inwards));
+  Sample sample = {.area = 0.5 * vec3_length(cross),
+                   .thickness = contact_surface_meet(surface, face, middle, inwards)};
   sample.layers = sample.thickness / height;
   return sample;
 }
@@ -85,6 +72,17 @@ static void find_medians(Sample *samples, int count, double length, FemThickness
   thickness->layers = median(samples, kept)->layers;
 }
 
+// At every so manieth face, in the order in which they were found.
+static Status measure_samples(const FemModel *model, ContactSurface *surface, int count, Sample *samples) {
+  ContactSurfaceFace *faces = memory_zeroed((size_t)count, sizeof *faces);
+  if (!faces) return status_no_memory("the thickness of a body");
+  for (int i = 0; i < count; i++) faces[i] = surface->faces[(long long)i * surface->count / count];
+  Status status = contact_surface_index(surface, model->rest);
+  for (int i = 0; i < count && !status; i++) samples[i] = measure_sample(model, surface, &faces[i]);
+  memory_free(faces);
+  return status;
+}
+
 Status fem_thickness_find(const FemModel *model, int body, FemThickness *thickness) {
   const FemModelBody *range = &model->bodies[body];
   ContactSurface surface;
@@ -94,10 +92,10 @@ Status fem_thickness_find(const FemModel *model, int body, FemThickness *thickne
   TRY(contact_surface_find(&surface, (const int(*)[4])model->tets, range->tet_begin, range->tet_end));
   int count = surface.count < MOST_SAMPLES ? surface.count : MOST_SAMPLES;
   Sample *samples = memory_zeroed((size_t)count, sizeof *samples);
-  for (int i = 0; samples && i < count; i++)
-    samples[i] = measure_sample(model, &surface, (int)((long long)i * surface.count / count));
-  if (samples) find_medians(samples, count, extent.length, thickness);
+  Status status = samples ? measure_samples(model, &surface, count, samples)
+                          : status_no_memory("the thickness of a body");
+  if (!status) find_medians(samples, count, extent.length, thickness);
   memory_free(samples);
   contact_surface_destroy(&surface);
-  return samples ? STATUS_OK : status_no_memory("the thickness of a body");
+  return status;
 }
