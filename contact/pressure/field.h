@@ -19,8 +19,8 @@
 // φ and g count with σ = −1, and ψ of a law is odd: then the sum over all cells at a point has no jump where
 // the number of them changes, and is the depth wherever the body covers it once more than it covers it inside
 // out. So U is a continuous function of the positions, whose gradient the forces are, through every
-// inversion. Not so in a tetrahedron with φ = 0 all round, of a sheet of one layer: that pushes outwards
-// either way.
+// inversion. Not so in a sheet of one layer, whose tetrahedra have φ = 0 all round as their neighbours have:
+// they push outwards either way.
 //
 // Force and torque of every pair balance by construction, whoever gave V and x̄. The sum over pairs is exactly
 // −∂U/∂x; one pair's force is not the gradient of its own U_ij: what its faces within the bodies sweep

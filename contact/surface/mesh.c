@@ -15,6 +15,7 @@ typedef struct Work {
   const ContactSystemDef *def;
   ContactMesh *mesh;
   unsigned char *outer; // of each tetrahedron, bit f: its face opposite to vertex f  (tet_count)
+  bool *is_thick;       // a tetrahedron at the vertex has one inside          (vertex_count)
 } Work;
 
 static Vec3 rest_of(const ContactSystemDef *def, int vertex) {
@@ -76,12 +77,23 @@ static void inverse_heights(const ContactSystemDef *def, int tet, double inverse
   }
 }
 
+static double deepest_of(const Work *work, int tet) {
+  double deepest = 0;
+  for (int v = 0; v < 4; v++) deepest = fmax(deepest, work->mesh->depths[work->def->tets[tet][v]]);
+  return deepest;
+}
+
+// What is more than a sheet of one layer.
+static void find_thick(Work *work) {
+  for (int i = 0; i < work->def->tet_count; i++)
+    for (int v = 0; v < 4 && deepest_of(work, i) > 0; v++) work->is_thick[work->def->tets[i][v]] = true;
+}
+
 static bool is_split(const Work *work, int tet) {
   const int *vertices = work->def->tets[tet];
   const double *depths = work->mesh->depths;
-  double inverse[4], deepest = 0;
-  for (int v = 0; v < 4; v++) deepest = fmax(deepest, depths[vertices[v]]);
-  if (!(deepest > 0)) return true;
+  double inverse[4];
+  if (!(deepest_of(work, tet) > 0)) return true;
   if (!work->outer[tet]) return false;
   inverse_heights(work->def, tet, inverse);
   for (int f = 0; f < 4; f++)
@@ -133,13 +145,13 @@ static Status reserve(ContactMesh *mesh, const ContactSystemDef *def, int split_
 
 static signed char turn_of(const Work *work, int tet) {
   const int *vertices = work->def->tets[tet];
-  double deepest = 0;
+  bool is_thick = false;
   Vec3 x[4];
   for (int v = 0; v < 4; v++) {
-    deepest = fmax(deepest, work->mesh->depths[vertices[v]]);
+    is_thick = is_thick || work->is_thick[vertices[v]];
     x[v] = rest_of(work->def, vertices[v]);
   }
-  if (!(deepest > 0)) return 0;
+  if (!is_thick) return 0;
   return vec3_det4(x[0], x[1], x[2], x[3]) < 0 ? -1 : 1;
 }
 
@@ -205,8 +217,10 @@ static Status make_field(Work *work) {
   const ContactSystemDef *def = work->def;
   work->mesh->depths = memory_zeroed((size_t)def->vertex_count, sizeof(double));
   work->outer = memory_zeroed((size_t)def->tet_count, 1);
-  if (!work->mesh->depths || !work->outer) return status_no_memory("the contact mesh");
+  work->is_thick = memory_zeroed((size_t)def->vertex_count, sizeof *work->is_thick);
+  if (!work->mesh->depths || !work->outer || !work->is_thick) return status_no_memory("the contact mesh");
   for (int b = 0; b < def->body_count; b++) TRY(measure_body(work, b));
+  find_thick(work);
   return cut_cells(work);
 }
 
@@ -224,6 +238,7 @@ Status contact_mesh_create(ContactMesh *mesh, const ContactSystemDef *def) {
   Work work = {.def = def, .mesh = mesh};
   Status status = make_field(&work);
   memory_free(work.outer);
+  memory_free(work.is_thick);
   return status;
 }
 

@@ -38,8 +38,8 @@ typedef struct ContactMesh {
   int *tets;                // whose part a cell is; ascending                             (cell_count)
   signed char *replaced;    // which of that tetrahedron's vertices the virtual one stands for; −1: whole
                             //                                                              (cell_count)
-  signed char *turns;       // the sign of its determinant at rest; 0: φ is 0 all round its tetrahedron
-                            //                                                              (cell_count)
+  signed char *turns;       // the sign of its determinant at rest; 0: φ is 0 all round its tetrahedron and
+                            // those that share a vertex with it                            (cell_count)
   unsigned char *outer;     // bit f: the cell's face opposite to its vertex f is on the surface  (cell_count)
   ContactVirtual *virtuals; //                                           (position_count − vertex_count)
   double *depths;           // φ at rest [m]                             (position_count)

@@ -482,6 +482,50 @@ START_TEST(a_sheet_of_one_cell_pushes_outwards) {
 }
 END_TEST
 
+static double det_of(const Scene *scene, int tet, const double *x) {
+  const int *v = scene->blocks.tets[tet];
+  return vec3_det4(vec3_at(x + 3 * v[0]), vec3_at(x + 3 * v[1]), vec3_at(x + 3 * v[2]),
+                   vec3_at(x + 3 * v[3]));
+}
+
+// A corner is pushed into its block, through tetrahedra of which every vertex is on the surface.
+START_TEST(a_corner_that_is_turned_inside_out_makes_no_leap) {
+  Scene scene = {.system = NULL};
+  blocks_add(&scene.blocks, &(BlockDef){.corner = {-4, -4, -2}, .cell = {1, 1, 1}, .cells = {8, 8, 2}});
+  blocks_add(&scene.blocks,
+             &(BlockDef){.corner = {-1.07, -0.91, -0.6}, .cell = {1, 1, 1}, .cells = {2, 2, 2}});
+  start(&scene, "clip");
+  const ContactBody *upper = &scene.blocks.bodies[1];
+  int corner = upper->vertex_begin + 2, turned = 0, n = 3 * scene.blocks.vertex_count;
+  double *d = calloc((size_t)n, sizeof(double)), *x = blocks_copy(&scene.blocks);
+  ck_assert_ptr_nonnull(d);
+  memcpy(d + 3 * corner, (double[]){-0.7, 0.6, 0.5}, 3 * sizeof(double));
+  for (int i = upper->tet_begin; i < upper->tet_end; i++) {
+    double low = 0, high = 1, deepest = 0, before = det_of(&scene, i, scene.blocks.x);
+    for (int v = 0; v < 4; v++)
+      deepest = fmax(deepest, contact_system_layout(scene.system)->mesh.depths[scene.blocks.tets[i][v]]);
+    step_to(&scene, high, d, x);
+    if (deepest > 0 || !(before * det_of(&scene, i, x) < 0)) continue;
+    for (int k = 0; k < 40; k++) {
+      double middle = (low + high) / 2;
+      step_to(&scene, middle, d, x);
+      *(before * det_of(&scene, i, x) > 0 ? &low : &high) = middle;
+    }
+    step_to(&scene, low - 1e-6, d, x);
+    ck_assert_ok(contact_system_update(scene.system, 0, x, scene.still, 0.01));
+    double *above = forces_at(&scene, x);
+    step_to(&scene, high + 1e-6, d, x);
+    double *below = forces_at(&scene, x), size = sqrt(product_dot(above, above, n));
+    for (int k = 0; k < n; k++) below[k] -= above[k];
+    ck_assert_double_le(sqrt(product_dot(below, below, n)), 1e-4 * size);
+    turned++;
+    free(above), free(below);
+  }
+  ck_assert_int_ge(turned, 2);
+  free(d), free(x), destroy(&scene);
+}
+END_TEST
+
 // ---- Faces that are no surface.
 
 // The four sides of two blocks that stand on each other, bits 0 … 3.
@@ -579,6 +623,7 @@ int main(void) {
   tcase_add_loop_test(tests, a_tilted_face_begins_with_no_leap, 0, 5);
   tcase_add_loop_test(tests, what_is_wholly_inside_is_pushed_out, 0, 4);
   tcase_add_test(tests, a_sheet_of_one_cell_pushes_outwards);
+  tcase_add_test(tests, a_corner_that_is_turned_inside_out_makes_no_leap);
   tcase_add_test(tests, faces_of_symmetry_are_no_surface);
   tcase_add_loop_test(tests, viscosity_presses_by_depth_and_speed, 0, 2);
   return suite_run("field", tests, 60);
