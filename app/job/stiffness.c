@@ -11,6 +11,7 @@ static const char *const reasons[] = {
     [FEM_COMPLIANCE_BLOW] = "by the hardest impact",
     [FEM_COMPLIANCE_ELEMENTS] = "by the elements at curved surfaces",
     [FEM_COMPLIANCE_LEAVES] = "by the elements of leaves that bend together",
+    [FEM_COMPLIANCE_TIP] = "by the elements at a tip",
 };
 enum { REASONS = sizeof reasons / sizeof *reasons };
 

@@ -13,6 +13,7 @@
 #include "fem/model/compliance/leaf.h"
 #include "fem/model/compliance/patch.h"
 #include "fem/model/compliance/thickness.h"
+#include "fem/model/compliance/tip.h"
 #include "fem/model/limits.h"
 #include "fem/model/parts.h"
 
@@ -29,6 +30,8 @@ static const double LAYER_GIVE = 0.34, HOLLOW_GIVE = 0.25, SAGITTAS = 2.5, SNUG 
 // Edges in the radius of a patch from which on they resolve it; a radius over that of the curvature from
 // which on bodies are squeezed as a whole.
 static const double RESOLVED = 2.2, WIDE = 0.6;
+// The depth at which a tip gives way over the reach of its elements, at most.
+static const double TIP_DEPTH = 0.2;
 
 // Of every body; an obstacle is rigid and has none.
 typedef struct Give {
@@ -40,6 +43,7 @@ typedef struct Give {
   double skin;      // the mean of it over the surface
   double volume;    // V [m³]
   ContactRoundness roundness;
+  FemTip tip;
   double low[3], high[3]; // the box around it at rest; of a shape without elements that of its radius [m]
 } Give;
 
@@ -125,6 +129,7 @@ static Status measure_bodies(const FemModel *model, double blow, Give *gives) {
     measure_box(model, &model->bodies[b], &gives[b]);
   memory_free(held);
   TRY(status);
+  for (int b = 0; b < model->body_count; b++) TRY(fem_tip_find(model, b, &gives[b].tip));
   measure_shapes(model, gives);
   for (int b = 0; b < model->scene->body_count; b++) {
     TRY(fem_extent_measure(model, b, &gives[b].extent));
@@ -168,11 +173,20 @@ static double pressure_of(const Give *a, const Give *b, double blow) {
   return pressure * fmax(1, pressure * compliance);
 }
 
+// At which the tip of one gives way in time. Coarser elements than its own are as much stiffer as they are
+// larger, by their area.
+static double sharp_of(const Give *tip, const Give *other) {
+  if (!(tip->tip.slope > 0)) return 0;
+  double coarser = fmax(1, other->roundness.edge / tip->tip.reach);
+  double give = tip->give + other->give / (coarser * coarser);
+  return give > 0 ? 1.5 * tip->tip.slope / (TIP_DEPTH * tip->tip.reach * give) : 0;
+}
+
 // Between two bodies: stiff enough for a press and for an impact [J], and where a surface curves no stiffer
 // than its elements resolve. `terms`: of p = terms · c d.
 static double stiffness_between(const Give *a, const Give *b, double blow, int terms, const Meeting *meeting,
                                 FemComplianceBound *bound) {
-  double sum = give_at(a, b, meeting), wall = a->wall;
+  double sum = give_at(a, b, meeting), wall = a->wall, sharp = fmax(sharp_of(a, b), sharp_of(b, a));
   *bound = FEM_COMPLIANCE_BODIES;
   if (!(sum > 0)) return 1;
   if (b->wall > 0) wall = wall > 0 ? fmin(wall, b->wall) : b->wall;
@@ -180,6 +194,7 @@ static double stiffness_between(const Give *a, const Give *b, double blow, int t
   if (meeting->layer > GIVE * sum) stiffness = 1 / (terms * meeting->layer), *bound = FEM_COMPLIANCE_ELEMENTS;
   if (meeting->leaf < stiffness) stiffness = meeting->leaf, *bound = FEM_COMPLIANCE_LEAVES;
   if (struck > stiffness) stiffness = struck, *bound = FEM_COMPLIANCE_BLOW;
+  if (sharp > stiffness) stiffness = sharp, *bound = FEM_COMPLIANCE_TIP;
   return stiffness;
 }
 
@@ -239,7 +254,7 @@ static Meeting meeting_of(const FemModel *model, const Give *gives, const Course
   Meeting meeting = {.curvature = one->roundness.round + other->roundness.round,
                      .is_hollow = lies_in_hollow(one, other),
                      .leaf = INFINITY};
-  meeting.is_curved = a != b && meeting.curvature > 0;
+  meeting.is_curved = a != b && meeting.curvature > 0 && !(one->tip.slope > 0) && !(other->tip.slope > 0);
   if (!meeting.is_curved) {
     if (!(curvature_of(one) > 0) && !(curvature_of(other) > 0))
       meeting.leaf = leaf_between(model, gives, a, b);

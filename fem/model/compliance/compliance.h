@@ -24,7 +24,8 @@
 // the edge of a cube stores the whole of W, p² L³/(2 E) then (twice that of two equal cubes), within d = L/4
 // (L/3).
 //
-// Between flat faces the choice does not depend on the mesh, but for leaves that bend together (leaf.h).
+// Between flat faces the choice does not depend on the mesh, but for leaves that bend together (leaf.h). It
+// does at tips.
 //
 // Where a surface curves, facets touch at corners if the overlap is not as deep as their sagittas, and the
 // elements do not resolve what varies within an edge. So the interface yields at least as much as λ of the
@@ -39,6 +40,16 @@
 //
 // A patch of the radius a yields by π/2 a (1/E_A' + 1/E_B') for each Pa in its middle. Where that is less
 // than what whole bodies yield, the 2 % are those of the patch.
+//
+// Under a rigid cone of the half angle β the mean pressure is E* cot β/2 at any load, 1/E* = 1/E_A' + 1/E_B'
+// (Sneddon 1965). A tip that does not give way is pressed by c d/3 at the depth d: F = π c tan²β d³/3. Where
+// one of the two has a tip (tip.h), c is at least that with which it gives way at a fifth of the reach h of
+// its elements, whatever the curvature behind it:
+//
+//   c = 1.5 E* cot β/(.2 h).
+//
+// Elements of the other body that are k times as long as h count with k² E': under a tip they are that much
+// stiffer.
 //
 // What loads and the hardest impact may press two with: Hertz's 2 κ a/(π Σ 1/E') in the middle of a patch;
 // between flat ones F over V/L of the smaller one, and p as above. Motions are not counted.
@@ -58,6 +69,7 @@ typedef enum FemComplianceBound {
   FEM_COMPLIANCE_BLOW,     // the hardest impact
   FEM_COMPLIANCE_ELEMENTS, // the elements at a curved surface
   FEM_COMPLIANCE_LEAVES,   // two leaves that bend together
+  FEM_COMPLIANCE_TIP,      // the elements at the tip of one
 } FemComplianceBound;
 
 typedef struct FemCompliance {
