@@ -6,32 +6,37 @@
 //
 //   h_i = Σ_j w_ij g_j / Σ_j w_ij |g_j|,   g the slope of the depth in B, w the volume at rest of i in it
 //
-// (contact/pressure/field.h): inwards from the surface of B that is nearest to what of i is inside; |h| = 1
-// where it sees one side of B only, about 0 where it reaches as far into either half. With the potential
-// `nodal` g is the direction of ∂V_ij/∂x, and w V_ij (contact/volume/volume.h). The element keeps the
-// direction in which it came in. The kept direction follows h from one accepted state to the next while |h| >
-// ½ and h turns by less than a right angle: so it does where an element slides round a drum or over an edge,
-// or turns together with B. Near the surface it follows however far h turns, as over a sharp ridge: only an
-// element that has been deep inside can come to the other side by passing through, and that it has been is
-// kept while h is opposed. Where h is opposed to the kept direction, by a component of more than ½, an
-// element that has been deep inside has gone beyond the middle of B and is pushed out on the other side: it
-// is called turned. An element that leaves B while it is turned has passed through; one that comes back is no
-// longer turned.
+// (contact/pressure/field.h). It points inwards from the surface of B that is nearest to what of i is inside.
+// |h| is 1 where that is one side of B only, and about 0 where it reaches as far into either half. With the
+// potential `nodal`, g is the direction of ∂V_ij/∂x and w is V_ij (contact/volume/volume.h).
 //
-// Where B has several layers, or a slot, the element meets parts of it (contact/passage/meetings.h) that
-// press it from opposite sides, now one more and now the other. So h is that of a part, and the element keeps
-// one direction for each. A part of the next accepted state is the one before where it has the cell that the
-// element met most of, or neighbours of it, or, after a fast slide, lies at rest no farther from that than
-// the margin of contact's lists, which bounds the step. Where parts become one, what is turned stays, then
-// what has a direction, then what has been deep inside, then the direction that fits best.
+// Kept direction. The element keeps the direction in which it came in. From one accepted state to the next
+// the kept direction becomes h where |h| > ½, unless the element is turned, if either
 //
-// Whether an element is deep inside, as one must be to become turned, is judged by two shares, so the unit of
-// length does not matter:
+//   h turns by less than a right angle: the element slides round a drum or over an edge, or turns with B;
+//   the element is near the surface, however far h turns, as over a sharp ridge: only an element that has
+//   been deep inside can come to the other side by passing through.
 //
-//   reach    the largest depth, over the depth of B's middle at that place (contact/surface/middle.h): at
-//            least a tenth, since cells along an edge of B's mesh can have any slope;
+// Turned. h is opposed where its component along the kept direction is below −½. An element is turned once h
+// is opposed while the element is deep inside, or has been since h became opposed: it has gone beyond the
+// middle of B and is pushed out on the other side. It is no longer turned once that component is above ½. An
+// element that leaves B while it is turned has passed through.
+//
+// Parts of B. Where B has several layers, or a slot, the element meets parts of B
+// (contact/passage/meetings.h) that press it from opposite sides, and their shares change. So h is that of
+// one part, and the element keeps one direction for each part. At the next accepted state a part is followed
+// by its cell, the one that the element met most of. It goes on in the part that has this cell, else in the
+// one whose cells have the most vertices in common with it, else, after a fast slide, in one that lies at
+// rest no farther from it than the margin of contact's lists, which bounds the step. Where two parts go on in
+// one, one entry stays: the one that is turned, else has a direction, else has been deep inside, else has the
+// direction that fits best.
+//
+// Deep inside. Two shares decide, so the unit of length does not matter:
+//
+//   reach    the largest depth, over the depth of B's middle at that place (contact/surface/middle.h). It
+//            must be a tenth, since cells along an edge of B's mesh can have any slope;
 //   covered  the volume that the two share, over that of the element or of the cells that it meets, whichever
-//            is less: at least a thousandth; without a depth a tenth.
+//            is less. It must be a thousandth; without a depth (`nodal`) a tenth, and reach is not asked.
 //
 // Below a millionth the centroid and the depth of an overlap are those of rounding: such a pair counts for
 // nothing, and such an element keeps no direction.
@@ -49,7 +54,7 @@ typedef struct ContactPassageEntry {
   int interface, tet;
   int cell; // of the part, the one that it meets most of; −1: a shape
   bool is_turned;
-  bool is_deep;          // or has been, and h has not come back to the kept direction since
+  bool is_deep;          // deep inside, or was, and h has been opposed to the kept direction since
   double direction[3];   // in which it came in; 0: not known yet
   double reach, covered; // scratch: the shares, now
 } ContactPassageEntry;
@@ -60,11 +65,11 @@ typedef struct ContactPassageList {
   size_t capacity;
 } ContactPassageList;
 
-// Elements of a list for which something holds: each once, in however many parts, for each body that it
-// meets.
+// How many elements of a list have some property. An element counts once for each body that it meets, in
+// however many parts.
 typedef struct ContactPassageCount {
   int elements;
-  ContactPassageEntry first, last; // of the first and of the last of them, where there are any
+  ContactPassageEntry first, last; // of the first and of the last of them; not set where there are none
 } ContactPassageCount;
 
 typedef struct ContactPassage {
@@ -76,8 +81,8 @@ typedef struct ContactPassage {
 
 void contact_passage_destroy(ContactPassage *passage); // also of a zeroed one, which is a beginning
 
-// At an evaluation of the system: fills `next` and `passed`. What it finds at the state that was accepted
-// last is what `now` has already.
+// Fills `next` and `passed` at an evaluation of the system. At the state that was accepted last it finds what
+// `now` has. STATUS_MEMORY.
 Status contact_passage_look(ContactPassage *passage, const ContactSystem *system,
                             const ContactEvaluation *evaluation);
 // The evaluated state is accepted.
@@ -86,13 +91,13 @@ void contact_passage_accept(ContactPassage *passage);
 // What is turned at the accepted state.
 ContactPassageCount contact_passage_turned(const ContactPassage *passage);
 
-// What lies inside of another body at the accepted state: it is covered, or covers what it meets, and reaches
-// more than half way to its middle. `field` only.
+// What lies inside another body at the accepted state: the element is covered, or covers what it meets, and
+// reaches more than half way to the middle. With the potential `field` only.
 ContactPassageCount contact_passage_inside(const ContactPassage *passage);
 
-// What a checkpoint keeps: so many numbers, a row an entry of `now`.
+// What a checkpoint keeps of `now`: a row of so many numbers for each entry.
 enum { CONTACT_PASSAGE_KEPT = 8 };
 void contact_passage_save(const ContactPassage *passage, double *values);
-Status contact_passage_load(ContactPassage *passage, int count, const double *values);
+Status contact_passage_load(ContactPassage *passage, int count, const double *values); // STATUS_MEMORY
 
 #endif

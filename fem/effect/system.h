@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The mechanical system of a run: model + the effects that its scene calls for. Evaluates forces and the
-// condensed or split Jacobian at any state (energies: fem/effect/system_energy.h); owns the matrix pattern
-// and the last accepted state.
+// The mechanical system of a run: the model and the effects that its scene calls for. It evaluates forces and
+// the condensed or split Jacobian at any state (energies: fem/effect/system_energy.h). It owns the matrix
+// pattern and the last accepted state.
 #ifndef TETLAP_FEM_EFFECT_SYSTEM_H
 #define TETLAP_FEM_EFFECT_SYSTEM_H
 
@@ -26,72 +26,78 @@ typedef struct FemSystem {
   int effect_count;
   FemPattern *pattern;
   FemMatrix matrix;                       // S, or K for split use
-  long long pattern_version;              // grows whenever matrix has been laid out anew
-  double layout_s;                        // that this took [s]
+  long long pattern_version;              // grows whenever `matrix` has been laid out anew
+  double layout_s;                        // wall time of laying it out [s]
   FemState accepted;                      // the last accepted state
   FemEffectHistory next[FEM_MAX_EFFECTS]; // scratch of fem_system_accept
-  double *forces;                         // scratch, and one more for how many ranks failed (vertex_count, 3)
-  const volatile sig_atomic_t *stop;      // becomes non-zero: forces, matrices and what effects keep are
-                                          // STATUS_INTERRUPTED; borrowed, NULL: never
+  double *forces;                         // of the last evaluation [N] (vertex_count, 3), and one of scratch
+  const volatile sig_atomic_t *stop;      // once it is other than 0, forces, matrices and fem_system_accept
+                                          // fail with STATUS_INTERRUPTED; borrowed; NULL: never
 } FemSystem;
 
-// After a failure its effects can be asked for the reason; fem_system_destroy must follow.
+// At the state in which the model begins. STATUS_INPUT: nothing is free to move. After a failure its effects
+// can be asked for the reason; fem_system_destroy must follow in any case.
 Status fem_system_create(FemSystem *system, const FemModel *model);
-// Takes it back in place to what depends on no state; fem_system_begin must follow. Failures as above.
+// Takes the system back, in place, to what it was before its first state; fem_system_begin must follow.
+// Failures as above.
 Status fem_system_create_again(FemSystem *system);
 void fem_system_destroy(FemSystem *system);
 
-// A state to try steps from the accepted one with, the caller's; it begins as a copy of that.
+// A state under trial, which begins as a copy of the accepted one and has that as its `last`. The caller's
+// (fem_state_destroy).
 Status fem_system_create_state(const FemSystem *system, FemState *state);
-// Fills it: unknowns as given (displacement u = x − X, velocity v; n each), prescribed coordinates as they
-// are at that time. Others stay as they are. v NULL: all is at rest, what is driven, too.
+// Fills a state at that time [s]: unknowns as given (displacement u = x − X [m], velocity v [m/s]; n each),
+// prescribed coordinates from their motions. Others stay as they are. v NULL: all velocities are 0, also of
+// what is driven.
 void fem_system_scatter(const FemSystem *system, double time, const double *u, const double *v,
                         FemState *state);
-// The unknowns of a state, the inverse.
+// The inverse: the unknowns of a state.
 void fem_system_gather(const FemSystem *system, const FemState *state, double *u, double *v);
 
-// Whether the state is made of numbers. RETRY: it is not; the message names the first vertex.
+// STATUS_RETRY: a position or velocity is not finite; the message names the first such vertex.
 Status fem_system_check_state(const FemSystem *system, const FemState *state);
 
-// Forces on all vertices into system->forces. RETRY as the effects say, and where the state or a force is no
-// number: the message names the vertex, and the effect that the force is from. On bodies that are held they
-// may be left out.
+// Forces on all vertices [N] into system->forces. On bodies that are held they may be left out. STATUS_RETRY
+// as the effects say, and where the state or a force is not finite: the message names the vertex, and the
+// effect that the force is from.
 Status fem_system_forces(FemSystem *system, const FemState *state);
-// The same, and the forces on bodies that are held.
+// The same with the forces on bodies that are held.
 Status fem_system_forces_of_all(FemSystem *system, const FemState *state);
 
-// Lays system->matrix out anew if an effect couples more at the state than the pattern has; then
-// pattern_version has grown. Call it before assembling into system->matrix or a copy of its layout.
+// Lays system->matrix out anew if an effect couples more at the state than the pattern has; pattern_version
+// grows then. To be called before assembling into system->matrix or a copy of its layout.
 Status fem_system_couple(FemSystem *system, const FemState *state);
 
-// Every effect is linear: K and D are constant.
+// Whether every effect is linear, so that K and D are constant.
 bool fem_system_is_linear(const FemSystem *system);
 
 // After the numbering was renewed: lays the matrix out again, unless there are no unknowns.
 Status fem_system_renumber(FemSystem *system);
 
-// matrix = k·K + d·D + m·M.
+// matrix = k·K + d·D + m·M, K = −∂f/∂x, D = −∂f/∂v, M the masses; K and D as far as the effects have them.
 Status fem_system_assemble(FemSystem *system, const FemState *state, double k, double d, double m,
                            FemMatrix *matrix);
-// The same but for one effect.
+// The same without one effect.
 Status fem_system_assemble_without(FemSystem *system, const FemEffectOps *left_out, const FemState *state,
                                    double k, double d, double m, FemMatrix *matrix);
 
-// A run begins, or goes on, at this state, which is accepted, whatever has been before: effects begin to
-// remember, and make lists for a step of that length [s]; pattern and matrix are those of this state.
+// Accepts a state at which a run begins or goes on, whatever was before: effects forget their lists, make new
+// ones for a step of that length [s], and begin their histories. Pattern and matrix are those of this state.
 Status fem_system_begin(FemSystem *system, const FemState *state, double next_step);
-// What the effect at that place remembers at the accepted state, from a checkpoint. STATUS_INPUT: it does not
-// fit.
+// Sets what the effect at that place (fem_system_place) remembers at the accepted state, from a checkpoint.
+// STATUS_INPUT: it does not fit.
 Status fem_system_remember(FemSystem *system, int place, const double *values, size_t count);
-// What is held has changed (contact_system_hold): nothing that was evaluated stands.
+// To be called where what is held has changed (contact_system_hold): the accepted state counts as another
+// one, so that nothing evaluated at it is used again.
 void fem_system_forget(FemSystem *system);
 // Lets effects renew their lists near a state that is not accepted.
 Status fem_system_renew(FemSystem *system, const FemState *state);
-// Accepts a state: effects renew their lists, and histories go on.
+// Accepts a state: effects renew their lists for a next step of that length [s] and advance their histories.
+// After a failure the accepted state is the one before.
 Status fem_system_accept(FemSystem *system, const FemState *state, double next_step);
 
-// How far a step from `time` may go, at most to `farthest`, so that no function of time is
-// missed (signal.h).
+// Until when a step from `time` may go, at most until `farthest` [s], so that it passes over no function of
+// time that the scene prescribes; `foresight` says how exactly these must be followed (signal.h).
 double fem_system_horizon(const FemSystem *system, const FemForesight *foresight, double time,
                           double farthest);
 
