@@ -17,7 +17,7 @@ static size_t values_of(const FemTangent *tangent) {
 
 Status fem_change_create(FemChange *change, const FemTangent *tangent) {
   size_t values = values_of(tangent);
-  *change = (FemChange){.party = -1, .placed = -1, .has_energies = true};
+  *change = (FemChange){.party = -1, .placed = -1, .wants_elastic = true};
   change->force = memory_zeroed(values, sizeof(double));
   change->motion = memory_zeroed(values, sizeof(double));
   change->speed = memory_zeroed(values, sizeof(double));
@@ -283,7 +283,7 @@ static Status rate_choice(FemChange *change, FemVaried *varied, const FemTangent
 }
 
 static double *elastic_of(FemChange *change) {
-  return change->has_energies ? &change->elastic : NULL;
+  return change->wants_elastic ? &change->elastic : NULL;
 }
 
 static Status change_material(FemChange *change, FemVaried *varied, const FemTangent *tangent,

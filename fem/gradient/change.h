@@ -12,37 +12,38 @@
 #include "fem/gradient/varied.h"
 
 typedef struct FemChange {
-  double *force;    // on all vertices, contact included                     (vertex_count, 3)
-  double *motion;   // of prescribed coordinates, else 0                     (vertex_count, 3)
-  double *speed;    // of their velocities                                   (vertex_count, 3)
-  double *rates;    // ∂ ln κ/∂p of each interface                           (interface_count)
-  double *slips;    // ∂μ/∂p of each interface                               (interface_count)
-  FemVariedLaw law; // contact by ∂p/∂p of a pressure law; zeroed: none
-  double *masses;   // ∂m/∂p of a density, else not set                      (vertex_count)
-  int party;        // the obstacle that moves; −1: none
-  double shift[3], spin[3];
-  int placed;                // the body that stands elsewhere; −1: none
-  double rest[3];            // by how much
-  bool has_energies;         // whether the elastic energy is wanted
-  double elastic, gravity;   // energies
+  double *force;             // ∂f/∂p on all vertices, contact included               (vertex_count, 3)
+  double *motion;            // ∂x_c/∂p of prescribed coordinates, else 0             (vertex_count, 3)
+  double *speed;             // ∂v_c/∂p of their velocities, else 0                   (vertex_count, 3)
+  double *rates;             // ∂ ln κ/∂p of each interface                           (interface_count)
+  double *slips;             // ∂μ/∂p of each interface                               (interface_count)
+  FemVariedLaw law;          // contact by the derivative of a pressure law; zeroed: by none
+  double *masses;            // ∂m/∂p of a density; of other parameters not set       (vertex_count)
+  int party;                 // the obstacle that moves; −1: none
+  double shift[3], spin[3];  // by v(x) = shift + spin × x
+  int placed;                // the body whose place is the parameter; −1: none
+  double rest[3];            // ∂X/∂p of its rest positions
+  bool wants_elastic;        // set by the caller: whether `elastic` is found; true at first
+  double elastic, gravity;   // ∂/∂p of these energies
   double *product, *contact; // scratch                                    (vertex_count, 3)
 } FemChange;
 
 Status fem_change_create(FemChange *change, const FemTangent *tangent);
 void fem_change_destroy(FemChange *change); // also of a zeroed one
 
-// By a parameter that was checked. `follows`: a contact stiffness that is chosen from E and ν changes with
-// them; else it stays.
+// By a parameter that was checked, at the state of the tangent. `follows`: a contact stiffness that is chosen
+// from E and ν changes with them; else it stays.
 Status fem_change_find(FemChange *change, FemVaried *varied, const FemTangent *tangent,
                        const FemParameter *parameter, bool follows);
 
-// The party of an obstacle: bodies, meshes among them, then shapes.
+// The party of the scene's obstacle of that number (FemCompliance: bodies, obstacles with a mesh among them,
+// then shapes).
 int fem_change_party(const FemModel *model, int obstacle);
-// v(x) on the vertices of the body that meets the obstacle, elsewhere nothing (vertex_count, 3).
+// v(x) on the vertices of the body that meets the obstacle, elsewhere 0 (vertex_count, 3).
 void fem_change_field(const FemChange *change, const FemTangent *tangent, int interface, double *field);
 // Whether the obstacle that moves is a side of the interface.
 bool fem_change_moves(const FemChange *change, const FemTangent *tangent, int interface);
-// Adds what happens to the contact forces of an interface.
+// Adds ∂f/∂p of the contact forces of an interface (vertex_count, 3).
 Status fem_change_add_contact(FemChange *change, const FemTangent *tangent, int interface, double *force);
 
 #endif

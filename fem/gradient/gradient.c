@@ -140,7 +140,7 @@ static Status precondition(void *self, const double *x, double *y) {
 }
 
 static Status create_krylov(Adjoint *adjoint) {
-  if (!fem_learned_is_there(adjoint->equilibrium.system->model)) return STATUS_OK;
+  if (!fem_remainder_is_there(adjoint->equilibrium.system->model)) return STATUS_OK;
   adjoint->krylov = (FemKrylov){.self = adjoint, .multiply = multiply, .precondition = precondition};
   return fem_krylov_create(&adjoint->krylov, adjoint->count);
 }
@@ -162,7 +162,7 @@ static void push(Adjoint *adjoint) {
   memset(from, 0, values_of(adjoint) * sizeof *from);
   memset(to, 0, values_of(adjoint) * sizeof *to);
   for (int i = 0; i < adjoint->count; i++) from[dofs[i]] = adjoint->lambda[i];
-  fem_tangent_add_learned(&adjoint->tangent, from, to);
+  fem_tangent_add_remainder(&adjoint->tangent, from, to);
   for (int i = 0; i < adjoint->count; i++) adjoint->step[i] += to[dofs[i]];
 }
 
@@ -286,7 +286,7 @@ static Status check_contact(const FemModel *model) {
   if (!contact->is_on) return STATUS_OK;
   if (contact->potential != CONTACT_POTENTIAL_FIELD)
     return status_fail(STATUS_INPUT, "contact.potential: gradients need field");
-  return fem_learned_check(model);
+  return fem_remainder_check(model);
 }
 
 static Status check_body(const FemBodyDef *body) {
@@ -321,12 +321,12 @@ Status fem_gradient_check(const FemModel *model, const FemGradientDef *def) {
       TRY(fem_quantity_check(model, &def->goals[g].terms[t].quantity));
   for (int p = 0; p < def->parameter_count; p++) TRY(fem_parameter_check(model, &def->parameters[p]));
   size_t count;
-  return def->by_weights ? fem_learned_count_weights(model, &count) : STATUS_OK;
+  return def->by_weights ? fem_answers_count_weights(model, &count) : STATUS_OK;
 }
 
 Status fem_gradient_make_weights(FemGradient *gradient, const FemModel *model, const FemGradientDef *def) {
   if (!def->by_weights || gradient->weights) return STATUS_OK;
-  TRY(fem_learned_count_weights(model, &gradient->weight_count));
+  TRY(fem_answers_count_weights(model, &gradient->weight_count));
   gradient->weights = memory_zeroed((size_t)def->goal_count * gradient->weight_count, sizeof(double));
   return gradient->weights ? STATUS_OK : status_no_memory("derivatives by weights");
 }

@@ -4,9 +4,10 @@
 //
 //   Jᵀ λ = ∂g/∂x,   dg/dp = ∂g/∂p + λ · ∂f/∂p + (∂g/∂x_c − J_cᵀ λ) · ∂x_c/∂p,   J = −∂f/∂x
 //
-// with x the free coordinates, x_c the prescribed ones and J_c their columns. J is the matrix, symmetric, but
-// of overlap models that do not clip: with these the adjoint is solved by GMRES with the matrix's factor.
-// Where contact begins or ends exactly at the state, g has no derivative; the values are one-sided there.
+// with x the free coordinates, x_c the prescribed ones and J_c their columns. J is the matrix, which is
+// symmetric. With overlap models that do not clip and with pressure laws it is not; then the adjoint is
+// solved by GMRES with the matrix's factor. Where contact begins or ends exactly at the state, g has no
+// derivative; the values are one-sided there.
 #ifndef TETLAP_FEM_GRADIENT_GRADIENT_H
 #define TETLAP_FEM_GRADIENT_GRADIENT_H
 
@@ -18,7 +19,7 @@ typedef struct FemGradientDef {
   const FemParameter *parameters; // borrowed                            (parameter_count)
   int goal_count, parameter_count;
   bool follows_choice; // a contact stiffness that is chosen changes with E and ν; else it is kept
-  bool by_weights;     // of the overlap model's network, too
+  bool by_weights;     // derivatives by the weights of the overlap model's network, too
 } FemGradientDef;
 
 typedef struct FemGradient {
@@ -37,15 +38,15 @@ typedef struct FemGradient {
 
 bool fem_gradient_has_friction(const FemModel *model);
 bool fem_gradient_has_following(const FemModel *model); // pressures that turn with their surface
-// Whether fem/gradient/path/path.h finds its derivatives: of a motion, of what remembers what has been, and
-// where the matrix is not symmetric.
+// Whether its derivatives are those of a path (fem/gradient/path/path.h): of a motion, with friction, and
+// with following pressures.
 bool fem_gradient_is_path(const FemModel *model);
 
 // STATUS_INPUT: what cannot be differentiated in this scene; the message says what and why.
 Status fem_gradient_check(const FemModel *model, const FemGradientDef *def);
-// Adds what is taken at the system's accepted state, which stays, to a zeroed gradient or to what earlier
-// states gave; the equilibrium is found more exactly first. STATUS_SOLVER: K is not positive definite, so
-// that the equilibrium is no stable one. Destroy the gradient also after a failure.
+// Adds to a zeroed gradient, or to what earlier states gave, the goals that are due at the system's accepted
+// state. The equilibrium there is first found more exactly; the accepted state stays as it is. STATUS_SOLVER:
+// K is not positive definite, so the equilibrium is not stable. Destroy the gradient also after a failure.
 Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGradientDef *def);
 // Room for the results, all 0.
 Status fem_gradient_create(FemGradient *gradient, const FemGradientDef *def);
@@ -53,8 +54,8 @@ Status fem_gradient_create(FemGradient *gradient, const FemGradientDef *def);
 Status fem_gradient_make_weights(FemGradient *gradient, const FemModel *model, const FemGradientDef *def);
 void fem_gradient_destroy(FemGradient *gradient); // also of a zeroed one
 
-// Whether an adjoint of which that share is left unsolved serves for derivatives to 1e-6. STATUS_SOLVER, with
-// the time: it does not, or is no number.
+// Whether an adjoint serves for derivatives to 1e-6 of which the share `residual` is left unsolved.
+// STATUS_SOLVER: it does not, or the share is NaN; the message says the time.
 Status fem_gradient_judge(double residual, double time);
 
 #endif

@@ -31,11 +31,11 @@ typedef enum FemParameterKind {
   FEM_PARAMETER_LAW_DEPTH,         // D [m]
   FEM_PARAMETER_LAW_EXPONENT,      // n
   FEM_PARAMETER_LAW_TABLE,         // the pressure in `row` of its table [Pa]
-  FEM_PARAMETER_FRICTION,          // μ between any two that no pair says otherwise
+  FEM_PARAMETER_FRICTION,          // μ of all that have none of their own in contact.pairs
   FEM_PARAMETER_PAIR_FRICTION,     // μ of contact.pairs[item]
   FEM_PARAMETER_START,             // a component of the velocity that a body starts with [m/s]
   FEM_PARAMETER_START_SPIN,        // of the angular velocity that it starts with [rad/s]
-  FEM_PARAMETER_CONTACT_VISCOSITY, // acts in motions alone, of which it has no derivative
+  FEM_PARAMETER_CONTACT_VISCOSITY, // acts in motions alone, where there is no derivative by it
 } FemParameterKind;
 
 typedef struct FemParameter {
@@ -59,7 +59,8 @@ const char *fem_parameter_idle(const FemModel *model, const FemParameter *parame
 double fem_parameter_value(const FemModel *model, const FemParameter *parameter);
 const char *fem_parameter_unit(const FemModel *model, const FemParameter *parameter);
 
-// Where a material has its constant (`row` of ogden's), where a motion has its parameter.
+// The number of a material that is this constant (`row` of ogden's terms or of the fibres' direction), and
+// that of a motion that is this parameter.
 double *fem_parameter_of_material(FemMaterial *material, FemParameterKind kind, int row);
 double *fem_parameter_of_motion(FemConstraintDef *motion, const FemParameter *parameter);
 

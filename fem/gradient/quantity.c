@@ -38,7 +38,7 @@ static Status check_energy(const FemModel *model, const FemQuantity *quantity) {
     return status_fail(STATUS_INPUT, "the scene has no contact");
   if (quantity->energies == FEM_QUANTITY_GRAVITY && !model->scene->has_gravity)
     return status_fail(STATUS_INPUT, "the scene has no effects.gravity");
-  if (quantity->energies & FEM_QUANTITY_CONTACT && fem_learned_is_there(model))
+  if (quantity->energies & FEM_QUANTITY_CONTACT && fem_remainder_is_there(model))
     return status_fail(STATUS_INPUT,
                        "the energy of contact has a derivative with contact.overlap: clip alone, and without "
                        "contact.law; energy:elastic and energy:gravity have theirs");
@@ -406,8 +406,9 @@ static Status change_energy(const FemQuantity *quantity, const FemTangent *tange
 
 // ---- All of them.
 
-Status fem_quantity_evaluate(const FemQuantity *quantity, const FemTangent *tangent, double weight,
-                             double *value, double *slope) {
+// q and, unless `slope` is NULL, its derivative by all positions, times `weight` and added.
+static Status evaluate_quantity(const FemQuantity *quantity, const FemTangent *tangent, double weight,
+                                double *value, double *slope) {
   switch (quantity->kind) {
   case FEM_QUANTITY_FORCE:
   case FEM_QUANTITY_PATCH:
@@ -428,8 +429,9 @@ Status fem_quantity_evaluate(const FemQuantity *quantity, const FemTangent *tang
   return STATUS_OK;
 }
 
-Status fem_quantity_change(const FemQuantity *quantity, const FemTangent *tangent, FemChange *change,
-                           double *derivative) {
+// Its derivative by a parameter at fixed positions.
+static Status change_quantity(const FemQuantity *quantity, const FemTangent *tangent, FemChange *change,
+                              double *derivative) {
   *derivative = 0;
   switch (quantity->kind) {
   case FEM_QUANTITY_FORCE:
@@ -470,10 +472,10 @@ Status fem_goal_evaluate(const FemGoal *goal, const FemTangent *tangent, double 
     if (!fem_term_is_due(term, tangent->system->model, tangent->state->time)) continue;
     factors[t] = term->weight;
     if (goal->is_misfit) {
-      TRY(fem_quantity_evaluate(&term->quantity, tangent, 0, &q, NULL));
+      TRY(evaluate_quantity(&term->quantity, tangent, 0, &q, NULL));
       factors[t] *= q - term->data;
     }
-    TRY(fem_quantity_evaluate(&term->quantity, tangent, factors[t], &q, slope));
+    TRY(evaluate_quantity(&term->quantity, tangent, factors[t], &q, slope));
     *value += goal->is_misfit ? 0.5 * factors[t] * (q - term->data) : factors[t] * q;
   }
   return STATUS_OK;
@@ -485,7 +487,7 @@ Status fem_goal_change(const FemGoal *goal, const FemTangent *tangent, const dou
   for (int t = 0; t < goal->term_count; t++) {
     double own;
     if (!fem_term_is_due(&goal->terms[t], tangent->system->model, tangent->state->time)) continue;
-    TRY(fem_quantity_change(&goal->terms[t].quantity, tangent, change, &own));
+    TRY(change_quantity(&goal->terms[t].quantity, tangent, change, &own));
     *derivative += factors[t] * own;
   }
   return STATUS_OK;

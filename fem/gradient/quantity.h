@@ -21,13 +21,13 @@ enum { FEM_QUANTITY_ELASTIC = 1, FEM_QUANTITY_CONTACT = 2, FEM_QUANTITY_GRAVITY 
 
 typedef struct FemQuantity {
   FemQuantityKind kind;
-  int body;   // of displacement and position; of force and moment the party (contact's order), of a probe, a
-              // patch and a pressure the probe's number
-  int other;  // the party that presses; −1: all
-  int vertex; // of a position, in the body's mesh
-  int component;                // x, y, z
-  int power;                    // m of a pressure
-  int energies;                 // those that are summed
+  int body;      // of displacement and position the body; of force and moment the party (FemCompliance); of a
+                 // probe, a patch and a pressure the number of the probe
+  int other;     // the party that presses; −1: all
+  int vertex;    // of a position, in the body's mesh
+  int component; // x, y, z
+  int power;     // m of a pressure
+  int energies;  // those that are summed
   const FemConstraintDef *held; // of a reaction, borrowed from the scene
 } FemQuantity;
 
@@ -48,22 +48,16 @@ typedef struct FemGoal {
 Status fem_quantity_check(const FemModel *model, const FemQuantity *quantity);
 const char *fem_quantity_unit(const FemQuantity *quantity);
 
-// q at the state, and q's derivative by all positions, prescribed ones included, times `weight` added to
-// slope (vertex_count, 3; NULL: not wanted); what friction has in it to tangent->friction, damping to
-// tangent->damping. The energy of contact is without that of friction's springs.
-Status fem_quantity_evaluate(const FemQuantity *quantity, const FemTangent *tangent, double weight,
-                             double *value, double *slope);
-// q's derivative by a parameter at fixed positions.
-Status fem_quantity_change(const FemQuantity *quantity, const FemTangent *tangent, FemChange *change,
-                           double *derivative);
-
 // Whether it is taken at that time, but for rounding; of a goal, one of its terms.
 bool fem_term_is_due(const FemTerm *term, const FemModel *model, double time);
 bool fem_goal_is_due(const FemGoal *goal, const FemModel *model, double time);
-// What the terms at the state's time give: added to g and to its derivative by all positions; `factors` ∂g/∂q
-// of each of them (term_count).
+// Adds the terms that are due at the state's time to g, and ∂g/∂x by all positions, prescribed ones included,
+// to `slope` (vertex_count, 3). `factors` gets ∂g/∂q of these terms (term_count). Derivatives through
+// friction, damping and overlaps are added to the tangent's `friction`, `damping` and `answers`. The energy
+// of contact is without that of friction's springs.
 Status fem_goal_evaluate(const FemGoal *goal, const FemTangent *tangent, double *value, double *slope,
                          double *factors);
+// ∂g/∂p of the terms that are due, at fixed positions, with `factors` as found above.
 Status fem_goal_change(const FemGoal *goal, const FemTangent *tangent, const double *factors,
                        FemChange *change, double *derivative);
 

@@ -9,14 +9,15 @@
 #include "fem/effect/contact/contact.h"
 #include "fem/element/quadratic_face.h"
 
-// Of the distance at which contact lays pairs out; none where obstacles move by themselves.
+// How far a coordinate may move before the pattern is looked at again, over the distance at which contact
+// lays pairs out. Where obstacles move by themselves it is looked at always.
 static const double SHARE_OF_REACH = 1.0 / 8;
 
-static Status find_learned(FemTangent *tangent) {
+static Status find_remainder(FemTangent *tangent) {
   const ContactEvaluation *evaluation;
-  if (!fem_learned_is_there(tangent->system->model)) return STATUS_OK;
+  if (!fem_remainder_is_there(tangent->system->model)) return STATUS_OK;
   TRY(fem_effect_contact_evaluate(tangent->system, tangent->state, &evaluation));
-  return fem_learned_find(&tangent->learned, tangent->contact, evaluation);
+  return fem_remainder_find(&tangent->remainder, tangent->contact, evaluation);
 }
 
 Status fem_tangent_create(FemTangent *tangent, FemSystem *system) {
@@ -41,15 +42,15 @@ Status fem_tangent_create(FemTangent *tangent, FemSystem *system) {
 
 void fem_tangent_destroy(FemTangent *tangent) {
   fem_matrix_destroy(&tangent->stiffness);
-  fem_learned_destroy(&tangent->learned);
+  fem_remainder_destroy(&tangent->remainder);
   memory_free(tangent->every_dof);
   memory_free(tangent->still);
   memory_free(tangent->coupled);
   *tangent = (FemTangent){0};
 }
 
-// Whether no pair can have come near since that was not laid out ahead: two boxes approach along three axes
-// by less than four times the way of a coordinate; twice that, as nodes of curved edges outrun the vertices.
+// Whether no pair can have come near that the pattern lacks. Two boxes approach along three axes by less than
+// four times the way of a coordinate; twice that, as nodes of curved edges outrun the vertices.
 static bool is_coupled(const FemTangent *tangent) {
   const FemModel *model = tangent->system->model;
   if (tangent->layout == 0 || tangent->layout != tangent->system->pattern_version) return false;
@@ -71,14 +72,14 @@ static Status lay_out(FemTangent *tangent) {
   return STATUS_OK;
 }
 
-// As if nothing moved, where damping has no stiffness.
+// At rest damping has no stiffness.
 Status fem_tangent_find(FemTangent *tangent, const FemState *state) {
   FemState still = *state;
   tangent->state = state;
   still.velocities = tangent->still;
   TRY(lay_out(tangent));
   TRY(fem_system_assemble_without(tangent->system, &fem_effect_stick, &still, 1, 0, 0, &tangent->stiffness));
-  return find_learned(tangent);
+  return find_remainder(tangent);
 }
 
 // A matrix that is never formed: y += share S x.
@@ -187,12 +188,12 @@ static Status turn_pressures(const FemTangent *tangent, const double *lambda, do
 Status fem_tangent_pull(const FemTangent *tangent, const double *x, double *y) {
   fem_matrix_multiply(&tangent->stiffness, x, y);
   TRY(turn_pressures(tangent, x, y));
-  fem_learned_add_product(&tangent->learned, true, x, y);
+  fem_remainder_add_product(&tangent->remainder, true, x, y);
   return STATUS_OK;
 }
 
-void fem_tangent_add_learned(const FemTangent *tangent, const double *x, double *y) {
-  fem_learned_add_product(&tangent->learned, false, x, y);
+void fem_tangent_add_remainder(const FemTangent *tangent, const double *x, double *y) {
+  fem_remainder_add_product(&tangent->remainder, false, x, y);
 }
 
 const ContactInterfaceDef *fem_tangent_interface(const FemTangent *tangent, int interface) {

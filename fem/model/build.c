@@ -276,7 +276,7 @@ Status fem_model_create(FemModel *model, const FemSceneDef *scene) {
   for (int o = 0; o < scene->obstacle_count; o++) mesh_count += scene->obstacles[o].kind == FEM_OBSTACLE_MESH;
   FemMesh *meshes = memory_zeroed((size_t)mesh_count, sizeof *meshes);
   if (!meshes) return status_no_memory("the meshes");
-  Status status = fem_model_meshes_load(scene, meshes);
+  Status status = fem_scene_meshes_load(scene, meshes);
   if (!status) status = build(model, meshes, mesh_count);
   for (int m = 0; m < mesh_count; m++) fem_mesh_destroy(&meshes[m]);
   memory_free(meshes);

@@ -107,7 +107,7 @@ static Status load_each(const FemSceneDef *scene, FemMesh *meshes, KeptMesh *kep
   return STATUS_OK;
 }
 
-Status fem_model_meshes_load(const FemSceneDef *scene, FemMesh *meshes) {
+Status fem_scene_meshes_load(const FemSceneDef *scene, FemMesh *meshes) {
   KeptMesh *kept = memory_zeroed((size_t)(scene->body_count + scene->obstacle_count) + 1, sizeof *kept);
   if (!kept) return status_no_memory("the scene's meshes");
   Status status = load_each(scene, meshes, kept);

@@ -8,6 +8,6 @@
 
 // Those of all bodies, then of the obstacles that have one: `meshes` has room for all; on error, too, the
 // caller destroys them. A file that several use is read once. Errors name the body or the obstacle.
-Status fem_model_meshes_load(const FemSceneDef *scene, FemMesh *meshes);
+Status fem_scene_meshes_load(const FemSceneDef *scene, FemMesh *meshes);
 
 #endif

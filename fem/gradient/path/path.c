@@ -295,10 +295,10 @@ static Status add_step(Sweep *sweep, int p, FemGradient *gradient) {
 
 static Status add_parameters(Sweep *sweep, FemGradient *gradient) {
   const FemModel *model = sweep->replay.system.model;
-  sweep->change.has_energies = false;
+  sweep->change.wants_elastic = false;
   for (int g = 0; g < sweep->def->goal_count; g++)
     if (fem_goal_is_due(&sweep->def->goals[g], model, sweep->replay.state.time))
-      sweep->change.has_energies = true;
+      sweep->change.wants_elastic = true;
   for (int p = 0; p < sweep->def->parameter_count; p++) TRY(add_step(sweep, p, gradient));
   return STATUS_OK;
 }

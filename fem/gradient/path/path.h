@@ -11,10 +11,11 @@
 //   q̄_{n−1} = (∂f/∂q_{n−1})ᵀ λ_n + (∂q_n/∂q_{n−1})ᵀ q̄_n
 //   dg/dp = ∂g/∂p + Σ λ_n · (∂f/∂p − ∂M/∂p v̇_n) + q̄_n · ∂q_n/∂p
 //
-// Without these, damping and learned overlap models J is the matrix; with them J is not symmetric, and its
-// transpose is applied exactly, by GMRES with the factor of the matrix (fem/gradient/damping.h, learned.h).
-// How the steps themselves depend on p is left out, as it is in every derivative of a run. A vertex that
-// changes between sticking and slipping within a step makes g one-sided there.
+// J is the matrix, but not with friction, following pressures, damping, pressure laws and overlap models that
+// do not clip. Then J is not symmetric; its transpose is applied exactly, by GMRES with the factor of the
+// matrix (fem/gradient/tangent.h, friction.h, damping.h). How the steps themselves depend on p is left out,
+// as it is in every derivative of a run. A vertex that changes between sticking and slipping within a step
+// makes g one-sided there.
 #ifndef TETLAP_FEM_GRADIENT_PATH_PATH_H
 #define TETLAP_FEM_GRADIENT_PATH_PATH_H
 

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/effect/contact/stick.h"
+#include "fem/gradient/gradient.h"
 
 enum { MAX_ITERATIONS = 30, STICKS = 1, SLIPS = 2 };
 // A step is balanced once Newton's method with the matrix there, which is near J or corrected by GMRES, does
@@ -33,12 +34,17 @@ FemReplayFormula fem_replay_formula(const FemReplay *replay, int k) {
                             ratio * ratio / (1 + ratio) / h};
 }
 
-double *fem_replay_u(const FemReplay *replay, int k) {
+// u and v of step k, which is in memory.
+static double *u_of(const FemReplay *replay, int k) {
   return replay->u + (size_t)replay->n * (size_t)(k - replay->first);
 }
 
-double *fem_replay_v(const FemReplay *replay, int k) {
+static double *v_of(const FemReplay *replay, int k) {
   return replay->v + (size_t)replay->n * (size_t)(k - replay->first);
+}
+
+const double *fem_replay_v(const FemReplay *replay, int k) {
+  return v_of(replay, k);
 }
 
 FemEffectHistory *fem_replay_histories(const FemReplay *replay, int k) {
@@ -81,10 +87,8 @@ static Status create_slips(FemReplay *replay) {
 }
 
 static Status create_krylov(FemReplay *replay) {
-  const FemModel *model = replay->system.model;
-  replay->is_near = !replay->stick && !fem_system_effect(&replay->system, &fem_effect_damping);
-  for (int l = 0; l < model->load_count; l++)
-    replay->is_near = replay->is_near && model->loads[l].triangle_count + model->loads[l].face_count == 0;
+  replay->is_near = !replay->stick && !fem_system_effect(&replay->system, &fem_effect_damping) &&
+                    !fem_gradient_has_following(replay->system.model);
   if (replay->is_near) return STATUS_OK;
   double **arrays[] = {&replay->ahead, &replay->aside, &replay->rate};
   bool fits = true;
@@ -161,7 +165,7 @@ static Status find_forces(FemReplay *replay, double time, const double *u, const
 static Status find_residual(FemReplay *replay, int k, double *left) {
   FemReplayFormula formula = fem_replay_formula(replay, k);
   size_t n = (size_t)replay->n;
-  double *u = fem_replay_u(replay, k), *v = fem_replay_v(replay, k);
+  double *u = u_of(replay, k), *v = v_of(replay, k);
   for (size_t i = 0; i < n; i++)
     v[i] = formula.c * u[i] + formula.near * u[i - n] + (k > 1 ? formula.far * u[i - 2 * n] : 0);
   TRY(find_forces(replay, replay->steps->times[k], u, v, replay->force));
@@ -175,7 +179,7 @@ static Status find_residual(FemReplay *replay, int k, double *left) {
 
 // What forces and changes of momentum within a step are measured by [N].
 static double scale_of(const FemReplay *replay, int k, double c) {
-  const double *v = fem_replay_v(replay, k);
+  const double *v = v_of(replay, k);
   double scale = fem_equilibrium_largest(replay->system.forces, 3 * replay->system.model->vertex_count);
   for (int i = 0; i < replay->n; i++) scale = fmax(scale, fem_replay_mass(replay, i) * c * fabs(v[i]));
   return scale;
@@ -232,7 +236,7 @@ static Status find_step(FemReplay *replay, double time, const double *u, const d
 static Status balance(FemReplay *replay, int k, FemReplayWay way) {
   double c = fem_replay_formula(replay, k).c, time = replay->steps->times[k], left;
   size_t n = (size_t)replay->n;
-  double *u = fem_replay_u(replay, k), *v = fem_replay_v(replay, k);
+  double *u = u_of(replay, k), *v = v_of(replay, k);
   fem_mixing_forget(&replay->mixing);
   TRY(find_residual(replay, k, &left));
   for (int i = 0; i < MAX_ITERATIONS && left > 0; i++) {
@@ -288,7 +292,7 @@ static Status keep_histories(FemReplay *replay, int k) {
   return STATUS_OK;
 }
 
-// Where points before it lead to; at the beginning, the velocity.
+// u at step k extrapolated from the steps before it; from one step by the velocity there.
 static double lead(const double *t, const double *u, size_t n, int k, const double *v) {
   if (k < FEM_REPLAY_LEAD) return u[-(ptrdiff_t)n] + (t[k] - t[k - 1]) * v[-(ptrdiff_t)n];
   double sum = 0;
@@ -304,7 +308,7 @@ static double lead(const double *t, const double *u, size_t n, int k, const doub
 static void guess(FemReplay *replay, int k) {
   size_t n = (size_t)replay->n;
   const double *t = replay->steps->times, *found = replay->steps->u ? replay->steps->u[k] : NULL;
-  double *u = fem_replay_u(replay, k), *v = fem_replay_v(replay, k);
+  double *u = u_of(replay, k), *v = v_of(replay, k);
   if (found) memcpy(u, found, n * sizeof *u);
   for (size_t i = 0; i < n && !found; i++) u[i] = lead(t, u + i, n, k, v + i);
 }
@@ -323,13 +327,13 @@ static Status find(FemReplay *replay, int k) {
 static Status step(FemReplay *replay, int k, bool is_again) {
   const double *t = replay->steps->times;
   TRY(find(replay, k));
-  fem_system_scatter(&replay->system, t[k], fem_replay_u(replay, k), fem_replay_v(replay, k), &replay->state);
+  fem_system_scatter(&replay->system, t[k], u_of(replay, k), v_of(replay, k), &replay->state);
   if (!is_again) TRY(count_switches(replay));
   TRY(fem_system_accept(&replay->system, &replay->state, k + 1 < replay->steps->count ? t[k + 1] - t[k] : 0));
   return keep_histories(replay, k);
 }
 
-// Where the run starts from another's end.
+// A run that goes on from another begins at that one's end.
 static Status begin(FemReplay *replay) {
   const FemModel *model = replay->system.model;
   if (!model->start) return STATUS_OK;
@@ -339,8 +343,7 @@ static Status begin(FemReplay *replay) {
 
 // The accepted state of step k, its histories borrowed.
 static void recall(FemReplay *replay, int k, FemState *state) {
-  fem_system_scatter(&replay->system, replay->steps->times[k], fem_replay_u(replay, k),
-                     fem_replay_v(replay, k), state);
+  fem_system_scatter(&replay->system, replay->steps->times[k], u_of(replay, k), v_of(replay, k), state);
   memcpy(state->histories, fem_replay_histories(replay, k),
          (size_t)replay->system.effect_count * sizeof *state->histories);
   state->version = fem_state_new_version();
@@ -368,7 +371,7 @@ static Status begin_anew(FemReplay *replay, int k) {
 
 // ---- Segments.
 
-// Copies the last rows before a segment, or `back`, there.
+// Keeps the last rows before a segment, or, `back`, puts them back.
 static void save(FemReplay *replay, int segment, bool back) {
   int begin = segment * replay->plan.length, from = segment > 0 ? begin + 1 - FEM_REPLAY_LEAD : 0;
   size_t n = (size_t)replay->n, count = n * (size_t)(begin + 1 - from);
@@ -376,12 +379,12 @@ static void save(FemReplay *replay, int segment, bool back) {
   if (back) replay->first = from;
   for (int i = 0; i < 2; i++) {
     double *kept = saved + (size_t)i * FEM_REPLAY_LEAD * n;
-    double *row = i == 0 ? fem_replay_u(replay, from) : fem_replay_v(replay, from);
+    double *row = i == 0 ? u_of(replay, from) : v_of(replay, from);
     memcpy(back ? row : kept, back ? kept : row, count * sizeof *row);
   }
 }
 
-// The segment comes to stand there; nothing stays of the other but where segments begin.
+// Takes a segment into memory in place of the other, of which only the beginnings of segments stay.
 static void turn_to(FemReplay *replay, int segment) {
   size_t begins = (size_t)(replay->plan.segment_count + 1) * (size_t)replay->system.effect_count;
   for (size_t i = begins; i < history_count(replay); i++) fem_effect_history_destroy(&replay->histories[i]);
@@ -389,7 +392,7 @@ static void turn_to(FemReplay *replay, int segment) {
   save(replay, segment, true);
 }
 
-// From where it begins.
+// Does the steps of the segment in memory.
 static Status go_through(FemReplay *replay, bool is_again) {
   int begin = replay->segment * replay->plan.length, last = replay->steps->count - 1;
   double began = clock_cpu_s();
@@ -416,7 +419,7 @@ Status fem_replay_go(FemReplay *replay) {
   return STATUS_OK;
 }
 
-// Step k and the one before.
+// Sees to it that step k and the one before are in memory.
 static Status fetch(FemReplay *replay, int k) {
   int segment = k > 0 ? (k - 1) / replay->plan.length : 0;
   if (segment == replay->segment) return STATUS_OK;
@@ -430,13 +433,13 @@ Status fem_replay_return(FemReplay *replay, int k) {
   if (fem_replay_is_anew(replay, k)) TRY(begin_anew(replay, k));
   recall(replay, k > 0 ? k - 1 : 0, &replay->before);
   replay->state.last = &replay->before;
-  TRY(fem_equilibrium_renew(&replay->equilibrium, time, fem_replay_u(replay, k)));
-  fem_system_scatter(&replay->system, time, fem_replay_u(replay, k), fem_replay_v(replay, k), &replay->state);
+  TRY(fem_equilibrium_renew(&replay->equilibrium, time, u_of(replay, k)));
+  fem_system_scatter(&replay->system, time, u_of(replay, k), v_of(replay, k), &replay->state);
   return STATUS_OK;
 }
 
 Status fem_replay_factorise(FemReplay *replay, int k) {
   double c = fem_replay_formula(replay, k).c;
-  return fem_equilibrium_factorise_moving(&replay->equilibrium, replay->steps->times[k],
-                                          fem_replay_u(replay, k), fem_replay_v(replay, k), c, c * c);
+  return fem_equilibrium_factorise_moving(&replay->equilibrium, replay->steps->times[k], u_of(replay, k),
+                                          v_of(replay, k), c, c * c);
 }
