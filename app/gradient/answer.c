@@ -8,6 +8,7 @@
 #include "app/gradient/parameter.h"
 #include "app/gradient/run.h"
 #include "base/log.h"
+#include "fem/gradient/path/check.h"
 
 static Status prepare(AppGradientAnswer *answer, const FemModel *model, const AppGradientWords *words) {
   double at = words->at > 0 ? words->at : INFINITY;

@@ -19,14 +19,15 @@
 #ifndef TETLAP_FEM_GRADIENT_PATH_PATH_H
 #define TETLAP_FEM_GRADIENT_PATH_PATH_H
 
-#include "fem/gradient/gradient.h"
-#include "fem/gradient/path/replay.h"
+#include <signal.h>
 
-// STATUS_INPUT: what cannot be differentiated in this scene; the message says what and why.
-Status fem_path_check(const FemModel *model, const FemGradientDef *def);
-// STATUS_SOLVER: a step of the replay cannot be balanced, or the adjoint has no solution there; the message
-// says which step. STATUS_INTERRUPTED once `stop`, if it is not NULL, is other than 0. Destroy the gradient
-// also after a failure.
+#include "fem/gradient/gradient.h"
+#include "fem/gradient/path/replay_steps.h"
+
+// STATUS_INPUT: what cannot be differentiated (fem_gradient_check, fem_path_check). STATUS_SOLVER: a step of
+// the replay cannot be balanced, or the adjoint has no solution there; the message says which step.
+// STATUS_INTERRUPTED once `stop`, if it is not NULL, is other than 0. Destroy the gradient also after a
+// failure.
 Status fem_path_differentiate(FemGradient *gradient, const FemModel *model, const FemGradientDef *def,
                               const FemReplaySteps *steps, const volatile sig_atomic_t *stop);
 

@@ -6,6 +6,7 @@
 #include "app/gradient/goal.h"
 #include "app/gradient/parameter.h"
 #include "app/gradient/run.h"
+#include "fem/gradient/path/check.h"
 #include "fem/gradient/path/path.h"
 #include "static_solve.h"
 

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/gradient/path/sweep.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "fem/sparse/vector.h"
+
+// Of a system that GMRES solves, the share of the right side that may be left.
+static const double RESIDUAL = 1e-14;
+// The same, of one that is solved with the factor of a later step.
+static const double KEPT = 1e-11;
+// A factor of a later step serves on until GMRES takes more directions: a new one costs about as much.
+enum { MOST_DIRECTIONS = 8 };
+
+size_t fem_sweep_value_count(const FemSweep *sweep) {
+  return 3 * (size_t)sweep->replay.system.model->vertex_count;
+}
+
+bool fem_sweep_has_friction(const FemSweep *sweep) {
+  return sweep->replay.stick != NULL;
+}
+
+static bool is_damped(const FemSweep *sweep) {
+  return sweep->damping.effect != NULL;
+}
+
+static void destroy_goal(FemSweepGoal *goal) {
+  memory_free(goal->beta);
+  memory_free(goal->alpha);
+  memory_free(goal->places);
+  memory_free(goal->histories);
+  memory_free(goal->moves);
+  fem_friction_destroy(&goal->friction);
+  fem_damping_destroy(&goal->damping);
+  fem_answers_destroy(&goal->answers);
+}
+
+void fem_sweep_destroy(FemSweep *sweep) {
+  for (int g = 0; sweep->goals && g < sweep->def->goal_count; g++) destroy_goal(&sweep->goals[g]);
+  fem_friction_destroy(&sweep->scratch);
+  fem_damping_destroy(&sweep->damping);
+  fem_krylov_destroy(&sweep->krylov);
+  fem_change_destroy(&sweep->change);
+  fem_tangent_destroy(&sweep->tangent);
+  fem_varied_destroy(&sweep->varied);
+  fem_replay_destroy(&sweep->replay);
+  void *arrays[] = {sweep->goals, sweep->lambda, sweep->weight, sweep->slope, sweep->right, sweep->factors};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
+}
+
+static Status create_goal(const FemSweep *sweep, FemSweepGoal *goal) {
+  size_t n = (size_t)sweep->replay.n;
+  goal->beta = memory_zeroed(3 * n, sizeof(double));
+  goal->alpha = memory_zeroed(3 * n, sizeof(double));
+  if (!goal->beta || !goal->alpha) return status_no_memory("the adjoint of a run");
+  TRY(fem_damping_create(&goal->damping, &sweep->replay.system));
+  if (!fem_sweep_has_friction(sweep)) return STATUS_OK;
+  TRY(fem_friction_create(&goal->friction, &sweep->replay.system));
+  goal->places = memory_zeroed(fem_sweep_value_count(sweep), sizeof(double));
+  goal->moves = memory_zeroed((size_t)goal->friction.interface_count, sizeof *goal->moves);
+  return goal->places && goal->moves ? STATUS_OK : status_no_memory("the adjoint of a run");
+}
+
+static Status multiply(void *self, const double *x, double *y);
+
+static Status precondition(void *self, const double *x, double *y) {
+  return fem_equilibrium_solve(&((FemSweep *)self)->replay.equilibrium, x, y);
+}
+
+Status fem_sweep_create(FemSweep *sweep, const FemModel *model, const FemGradientDef *def,
+                        const FemReplaySteps *steps) {
+  size_t goals = (size_t)def->goal_count, terms = 0;
+  *sweep = (FemSweep){.def = def};
+  TRY(fem_replay_create(&sweep->replay, model, steps));
+  TRY(fem_varied_create(&sweep->varied, model));
+  TRY(fem_tangent_create(&sweep->tangent, &sweep->replay.system));
+  TRY(fem_change_create(&sweep->change, &sweep->tangent));
+  size_t n = (size_t)sweep->replay.n, values = fem_sweep_value_count(sweep);
+  for (size_t g = 0; g < goals; g++) terms += (size_t)def->goals[g].term_count;
+  sweep->goals = memory_zeroed(goals, sizeof *sweep->goals);
+  sweep->lambda = memory_zeroed(values, sizeof(double));
+  sweep->weight = memory_zeroed(values, sizeof(double));
+  sweep->slope = memory_zeroed(goals * values, sizeof(double));
+  sweep->right = memory_zeroed(n, sizeof(double));
+  sweep->factors = memory_zeroed(terms, sizeof(double));
+  if (!sweep->goals || !sweep->lambda || !sweep->weight || !sweep->slope || !sweep->right || !sweep->factors)
+    return status_no_memory("the adjoint of a run");
+  for (size_t g = 0; g < goals; g++) TRY(create_goal(sweep, &sweep->goals[g]));
+  TRY(fem_damping_create(&sweep->damping, &sweep->replay.system));
+  if (fem_sweep_has_friction(sweep)) TRY(fem_friction_create(&sweep->scratch, &sweep->replay.system));
+  sweep->krylov = (FemKrylov){.self = sweep, .multiply = multiply, .precondition = precondition};
+  return fem_krylov_create(&sweep->krylov, (int)n);
+}
+
+// ---- The adjoint of a step.
+
+// The numbers of a step, its places in a ring of three.
+static double *of_step(const FemSweep *sweep, double *ring, int k) {
+  return ring + (size_t)sweep->replay.n * (size_t)(k % 3);
+}
+
+double *fem_sweep_beta(const FemSweep *sweep, const FemSweepGoal *goal) {
+  return of_step(sweep, goal->beta, sweep->step);
+}
+
+double fem_sweep_carried(const FemSweep *sweep, double *ring, int k, int i) {
+  double near = fem_replay_formula(&sweep->replay, k + 1).near * of_step(sweep, ring, k + 1)[i];
+  return near + fem_replay_formula(&sweep->replay, k + 2).far * of_step(sweep, ring, k + 2)[i];
+}
+
+void fem_sweep_spread(FemSweep *sweep, const double *x, double sign) {
+  const FemNumbering *numbering = &sweep->replay.system.numbering;
+  memset(sweep->lambda, 0, fem_sweep_value_count(sweep) * sizeof(double));
+  for (int i = 0; i < numbering->count; i++) sweep->lambda[numbering->dof_of_unknown[i]] = sign * x[i];
+}
+
+// y = (−∂f/∂u − c ∂f/∂v + c² M)ᵀ x, exact.
+static Status multiply(void *self, const double *x, double *y) {
+  FemSweep *sweep = self;
+  const FemNumbering *numbering = &sweep->replay.system.numbering;
+  double c = fem_replay_formula(&sweep->replay, sweep->step).c;
+  fem_sweep_spread(sweep, x, 1);
+  TRY(fem_tangent_pull(&sweep->tangent, sweep->lambda, sweep->weight));
+  if (fem_sweep_has_friction(sweep)) {
+    TRY(fem_friction_begin(&sweep->scratch, &sweep->replay.state));
+    TRY(fem_friction_pull(&sweep->scratch, CONTACT_ALL_INTERFACES, sweep->lambda, 1));
+  }
+  fem_damping_begin(&sweep->damping, &sweep->replay.state);
+  TRY(fem_damping_pull(&sweep->damping, sweep->lambda, 1));
+  for (int i = 0; i < numbering->count; i++) {
+    int dof = numbering->dof_of_unknown[i];
+    y[i] = sweep->weight[dof] + c * c * fem_replay_mass(&sweep->replay, i) * x[i];
+    if (fem_sweep_has_friction(sweep)) y[i] -= sweep->scratch.now[dof];
+    if (is_damped(sweep)) y[i] -= sweep->damping.now[dof] + c * sweep->damping.rate[dof];
+  }
+  return STATUS_OK;
+}
+
+static Status factorise(FemSweep *sweep) {
+  sweep->factorised = sweep->step;
+  sweep->is_spent = false;
+  return fem_replay_factorise(&sweep->replay, sweep->step);
+}
+
+static Status solve_with_factor(FemSweep *sweep, double *beta, double *residual) {
+  Status status = fem_krylov_solve(&sweep->krylov, sweep->right, RESIDUAL, beta, residual);
+  sweep->is_spent = sweep->is_spent || status || sweep->krylov.directions > MOST_DIRECTIONS;
+  return status;
+}
+
+// With the factor of a later step, if it serves; else with this one's, which all goals share.
+static Status solve(FemSweep *sweep, double *beta, double *residual) {
+  *residual = 0;
+  memset(beta, 0, (size_t)sweep->replay.n * sizeof *beta);
+  if (fem_vector_dot(sweep->replay.n, sweep->right, sweep->right) == 0) return STATUS_OK; // after all terms
+  if (sweep->factorised > 0 && (!sweep->is_spent || sweep->factorised == sweep->step)) {
+    Status status = solve_with_factor(sweep, beta, residual);
+    bool is_fresh = sweep->factorised == sweep->step;
+    if (is_fresh || (status && status != STATUS_SOLVER) || (!status && *residual <= KEPT)) return status;
+  }
+  TRY(factorise(sweep));
+  return solve_with_factor(sweep, beta, residual);
+}
+
+bool fem_sweep_is_last(const FemSweep *sweep) {
+  return sweep->step == sweep->replay.steps->count - 1;
+}
+
+double fem_sweep_slope(const FemSweep *sweep, int g, size_t dof) {
+  const FemSweepGoal *goal = &sweep->goals[g];
+  double slope = sweep->slope[fem_sweep_value_count(sweep) * (size_t)g + dof];
+  if (is_damped(sweep)) slope += goal->damping.now[dof];
+  return fem_sweep_has_friction(sweep) ? slope + goal->places[dof] + goal->friction.now[dof] : slope;
+}
+
+double fem_sweep_rate(const FemSweep *sweep, int g, size_t dof) {
+  return is_damped(sweep) ? sweep->goals[g].damping.rate[dof] : 0;
+}
+
+// What friction and damping have by λ = −β.
+static Status pull_step(FemSweep *sweep, FemSweepGoal *goal, const double *beta) {
+  fem_sweep_spread(sweep, beta, -1);
+  TRY(fem_damping_pull(&goal->damping, sweep->lambda, 1));
+  if (!fem_sweep_has_friction(sweep)) return STATUS_OK;
+  return fem_friction_pull(&goal->friction, CONTACT_ALL_INTERFACES, sweep->lambda, 1);
+}
+
+Status fem_sweep_solve_step(FemSweep *sweep, int g, double *largest) {
+  int k = sweep->step;
+  double c = fem_replay_formula(&sweep->replay, k).c, residual;
+  FemSweepGoal *goal = &sweep->goals[g];
+  double *beta = fem_sweep_beta(sweep, goal), *alpha = of_step(sweep, goal->alpha, k);
+  const int *dofs = sweep->replay.system.numbering.dof_of_unknown;
+  for (int i = 0; i < sweep->replay.n; i++) {
+    double s = fem_replay_mass(&sweep->replay, i) * fem_sweep_carried(sweep, goal->beta, k, i);
+    sweep->right[i] = -c * (s + fem_sweep_rate(sweep, g, (size_t)dofs[i])) -
+                      fem_sweep_carried(sweep, goal->alpha, k, i) -
+                      fem_sweep_slope(sweep, g, (size_t)dofs[i]);
+    alpha[i] = s;
+  }
+  TRY(solve(sweep, beta, &residual));
+  TRY(fem_gradient_judge(residual, sweep->replay.steps->times[k]));
+  *largest = fmax(*largest, residual);
+  TRY(pull_step(sweep, goal, beta));
+  TRY(fem_tangent_pull(&sweep->tangent, sweep->lambda, sweep->weight));
+  for (size_t i = 0; i < fem_sweep_value_count(sweep); i++)
+    sweep->slope[fem_sweep_value_count(sweep) * (size_t)g + i] -= sweep->weight[i];
+  for (int i = 0; i < sweep->replay.n; i++)
+    alpha[i] += c * fem_replay_mass(&sweep->replay, i) * beta[i] + fem_sweep_rate(sweep, g, (size_t)dofs[i]);
+  return STATUS_OK;
+}
