@@ -8,6 +8,7 @@
 #include "app/gradient/run.h"
 #include "fem/gradient/path/check.h"
 #include "fem/gradient/path/path.h"
+#include "fem/gradient/path/replay.h"
 #include "static_solve.h"
 
 enum { MOST = 16 };
