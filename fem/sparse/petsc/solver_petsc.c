@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Condensed system by conjugate gradients with algebraic multigrid of PETSc: `amg` is hypre's BoomerAMG, with
-// unknowns of a vertex kept apart by their direction (Henson and Yang 2002) and its hierarchy worked through
-// by fem/sparse/multigrid/cycle.h, `gamg` PETSc's smoothed aggregation with the rigid motions as near-null
-// space (Vaněk, Mandel and Brezina 1996; Adams et al. 2004).
+// Condensed system by conjugate gradients with algebraic multigrid of PETSc (fem/sparse/petsc/multigrid.h):
+// `amg` is BoomerAMG, `gamg` smoothed aggregation.
 //
 // A hierarchy costs as much as some five iterations and still serves after small changes of the matrix: it is
 // kept while the number of iterations stays near that of when it was new. Conjugate gradients always use the
 // newest matrix, so the solution does not depend on it. Counts decide and no clock, so a run is reproducible.
-//
-// The multigrid sees three coordinates of every vertex that has an unknown; prescribed ones stand alone, with
-// nothing but a diagonal.
-#include <limits.h>
-#include <math.h>
-
 #include "base/machine/clock.h"
 #include "base/memory.h"
 #include "fem/sparse/cg.h"
-#include "fem/sparse/petsc/hierarchy.h"
-#include "fem/sparse/petsc/petsc_library.h"
+#include "fem/sparse/petsc/multigrid.h"
 #include "fem/sparse/solver.h"
 #include "fem/sparse/vector.h"
 #include "fem/sparse/wear.h"
@@ -29,84 +20,30 @@ bool fem_solver_has_multigrid(void) {
   return fem_petsc_library_has_hypre();
 }
 
-typedef enum Kind { BOOMER, GAMG } Kind;
-static const char *const names[] = {[BOOMER] = "amg", [GAMG] = "gamg"};
-static const char *const prefixes[] = {[BOOMER] = "tetlap_amg_", [GAMG] = "tetlap_gamg_"};
-
-// Rows of the whole matrix, both halves, of the coordinates that the multigrid sees.
-typedef struct Rows {
-  int count;
-  int *begin, *column; //      (count + 1), (begin[count])
-  double *value;       //      (begin[count])
-} Rows;
-
 typedef struct PetscSolver {
-  Kind kind;
-  const FemPetscLibrary *petsc;
   int threads;
   double tolerance, aimed; // relative: its own, and that of the next solve
-  int size;                // unknowns
-  int row_count;           // three a vertex that has some
-  int *place;              // row of each unknown                             (size)
-  double *rest;            // of those vertices [m]; NULL: not known          (row_count)
-  double *right, *left;    // what the multigrid is given and gives           (row_count)
-  Vec right_vec, left_vec; // views of them
-  Rows rows;               // kept by gamg, whose matrix they are
-  Mat matrix;              // of gamg
-  PC multigrid;            // of gamg; NULL: none yet
-  FemCycle cycle;          // of amg; without levels: none yet
-  FemWear wear;            // of either
+  FemVertexRows rows;      // of the unknowns that were analysed
+  FemPetscMultigrid multigrid;
+  FemWear wear; // of its hierarchy
   FemCg cg;
   const FemMatrix *current; // borrowed, of the last factorise; NULL: none
   long long layout;         // that was analysed
   FemSolverStats stats;
 } PetscSolver;
 
+static const char *name_of(const PetscSolver *solver) {
+  return fem_petsc_multigrid_name(solver->multigrid.kind);
+}
+
 static void wear(void *self) {
   ((PetscSolver *)self)->wear.is_worn = true;
 }
 
-// Errors that a matrix can be the cause of, so that another one may do. hypre's are all of one kind.
-static bool is_of_matrix(PetscErrorCode code) {
-  return code == PETSC_ERR_MAT_LU_ZRPVT || code == PETSC_ERR_MAT_CH_ZRPVT || code == PETSC_ERR_FP ||
-         code == PETSC_ERR_CONV_FAILED || code == PETSC_ERR_NOT_CONVERGED || code == PETSC_ERR_LIB;
-}
-
-static Status fail_in(const PetscSolver *solver, const char *what, PetscErrorCode code) {
-  if (code == PETSC_ERR_MEM) return status_no_memory("the multigrid of the condensed system");
-  return status_fail(is_of_matrix(code) ? STATUS_RETRY : STATUS_SOLVER,
-                     "%s: %s failed with PETSc's error %d; solver.linear: cholmod does without PETSc",
-                     names[solver->kind], what, (int)code);
-}
-
-#define PETSC_TRY(what, call)                                                                                \
-  do {                                                                                                       \
-    PetscErrorCode code_ = (call);                                                                           \
-    if (code_) return fail_in(solver, what, code_);                                                          \
-  } while (0)
-
-static void free_rows(Rows *rows) {
-  memory_free(rows->begin), memory_free(rows->column), memory_free(rows->value);
-  *rows = (Rows){0};
-}
-
-static void forget_multigrid(PetscSolver *solver) {
-  if (solver->multigrid) solver->petsc->PCDestroy(&solver->multigrid);
-  if (solver->matrix) solver->petsc->MatDestroy(&solver->matrix);
-  fem_cycle_destroy(&solver->cycle);
-  solver->multigrid = NULL, solver->matrix = NULL;
-  free_rows(&solver->rows);
-}
-
 static void forget(PetscSolver *solver) {
-  forget_multigrid(solver);
-  if (solver->right_vec) solver->petsc->VecDestroy(&solver->right_vec);
-  if (solver->left_vec) solver->petsc->VecDestroy(&solver->left_vec);
-  memory_free(solver->place), memory_free(solver->rest);
-  memory_free(solver->right), memory_free(solver->left);
+  fem_petsc_multigrid_clear(&solver->multigrid);
+  fem_vertex_rows_destroy(&solver->rows);
   fem_cg_destroy(&solver->cg);
-  solver->place = NULL, solver->rest = solver->right = solver->left = NULL;
-  solver->right_vec = solver->left_vec = NULL;
   solver->current = NULL;
   solver->layout = 0;
 }
@@ -117,106 +54,41 @@ static void destroy(void *self) {
   memory_free(self);
 }
 
-// BoomerAMG as measured on contact, friction, statics and ν = 0.45: one level of aggressive coarsening, which
-// halves memory for a third more iterations. gamg with its own smoother.
-static Status set_options(const PetscSolver *solver) {
-  static const char *const options[][2] = {
-      {"-tetlap_amg_pc_hypre_type", "boomeramg"},
-      {"-tetlap_amg_pc_hypre_boomeramg_coarsen_type", "HMIS"},
-      {"-tetlap_amg_pc_hypre_boomeramg_interp_type", "ext+i"},
-      {"-tetlap_amg_pc_hypre_boomeramg_P_max", "4"},
-      {"-tetlap_amg_pc_hypre_boomeramg_strong_threshold", "0.5"},
-      {"-tetlap_amg_pc_hypre_boomeramg_agg_nl", "1"},
-      {"-tetlap_gamg_pc_gamg_reuse_interpolation", "true"},
-  };
-  for (size_t i = 0; i < sizeof options / sizeof *options; i++)
-    PETSC_TRY(options[i][0], solver->petsc->PetscOptionsSetValue(NULL, options[i][0], options[i][1]));
-  return STATUS_OK;
-}
-
-static Status create(Kind kind, void **self, int threads, double tolerance) {
+static Status create(FemPetscKind kind, void **self, int threads, double tolerance) {
   *self = NULL;
-  const FemPetscLibrary *petsc;
+  FemPetscMultigrid multigrid;
   if (!(tolerance > 0 && tolerance < 1))
-    return status_fail(STATUS_INPUT, "solver %s: the tolerance must lie between 0 and 1, not %g", names[kind],
-                       tolerance);
-  TRY(fem_petsc_library(&petsc));
-  if (kind == BOOMER && !fem_petsc_library_has_hypre())
-    return status_fail(STATUS_IO,
-                       "solver.linear: amg is BoomerAMG of hypre, which this PETSc was built without; "
-                       "use gamg or cholmod");
+    return status_fail(STATUS_INPUT, "solver %s: the tolerance must lie between 0 and 1, not %g",
+                       fem_petsc_multigrid_name(kind), tolerance);
+  TRY(fem_petsc_multigrid_open(&multigrid, kind));
   PetscSolver *solver = memory_zeroed(1, sizeof *solver);
   if (!solver) return status_no_memory("the solver amg");
   *self = solver;
-  solver->kind = kind;
-  solver->petsc = petsc;
+  solver->multigrid = multigrid;
   solver->threads = threads;
   solver->tolerance = solver->aimed = tolerance;
-  return set_options(solver);
+  return STATUS_OK;
 }
 
 static Status create_amg(void **self, int threads, double tolerance) {
-  return create(BOOMER, self, threads, tolerance);
+  return create(FEM_PETSC_BOOMER, self, threads, tolerance);
 }
 static Status create_gamg(void **self, int threads, double tolerance) {
-  return create(GAMG, self, threads, tolerance);
-}
-
-// Rows of the vertices that have unknowns; whether they are those of the last analysis.
-static bool number_rows(PetscSolver *solver, const FemMatrix *pattern, int *place, double *rest) {
-  int row = 0, unknown = 0;
-  bool is_same = solver->place && solver->size == pattern->size;
-  for (int v = 0; v < pattern->vertex_count; v++) {
-    int before = unknown;
-    for (int c = 0; c < 3; c++) {
-      if (pattern->unknown_of_dof[3 * v + c] < 0) continue;
-      place[unknown] = row + c;
-      is_same = is_same && solver->place[unknown] == row + c;
-      unknown++;
-    }
-    if (unknown == before) continue;
-    for (int c = 0; c < 3 && pattern->rest; c++) rest[row + c] = pattern->rest[3 * v + c];
-    row += 3;
-  }
-  is_same = is_same && solver->row_count == row;
-  solver->row_count = row;
-  return is_same;
-}
-
-static Status make_vectors(PetscSolver *solver) {
-  const FemPetscLibrary *petsc = solver->petsc;
-  size_t rows = (size_t)solver->row_count;
-  solver->right = memory_zeroed(rows, sizeof *solver->right);
-  solver->left = memory_zeroed(rows, sizeof *solver->left);
-  if (!solver->right || !solver->left) return status_no_memory("the solver amg");
-  TRY(fem_cg_create(&solver->cg, solver->size));
-  PETSC_TRY("a vector", petsc->VecCreateSeqWithArray(petsc->self, 3, solver->row_count, solver->right,
-                                                     &solver->right_vec));
-  PETSC_TRY("a vector",
-            petsc->VecCreateSeqWithArray(petsc->self, 3, solver->row_count, solver->left, &solver->left_vec));
-  return STATUS_OK;
+  return create(FEM_PETSC_GAMG, self, threads, tolerance);
 }
 
 // Another pattern over the same unknowns leaves the hierarchy be.
 static Status analyse_rows(PetscSolver *solver, const FemMatrix *pattern) {
-  int *place = memory_zeroed((size_t)pattern->size, sizeof *place);
-  double *rest = memory_zeroed(3 * (size_t)pattern->size, sizeof *rest);
-  if (!place || !rest) {
-    memory_free(place), memory_free(rest);
-    return status_no_memory("the solver amg");
-  }
-  if (number_rows(solver, pattern, place, rest)) {
-    memory_free(place), memory_free(rest);
+  FemVertexRows rows;
+  TRY(fem_vertex_rows_create(&rows, pattern));
+  if (solver->rows.place && fem_vertex_rows_are_same(&solver->rows, &rows)) {
+    fem_vertex_rows_destroy(&rows);
     return STATUS_OK;
   }
-  int rows = solver->row_count;
   forget(solver);
-  solver->row_count = rows;
-  solver->size = pattern->size;
-  solver->place = place;
-  solver->rest = rest;
-  if (!pattern->rest) memory_free(solver->rest), solver->rest = NULL;
-  Status status = make_vectors(solver);
+  solver->rows = rows;
+  Status status = fem_petsc_multigrid_lay_out(&solver->multigrid, rows.count);
+  if (!status) status = fem_cg_create(&solver->cg, rows.size);
   if (status) forget(solver);
   return status;
 }
@@ -233,140 +105,13 @@ static Status analyse(void *self, const FemMatrix *pattern) {
   return STATUS_OK;
 }
 
-// How many entries each row has, then where it begins. Rows that no unknown has: one.
-static void count_entries(const PetscSolver *solver, const FemMatrix *matrix, int *begin) {
-  for (int u = 0; u < matrix->size; u++)
-    for (int k = matrix->col_begin[u]; k < matrix->col_begin[u + 1]; k++) {
-      begin[solver->place[u] + 1]++;
-      if (matrix->row[k] != u) begin[solver->place[matrix->row[k]] + 1]++;
-    }
-  for (int r = 0; r < solver->row_count; r++) begin[r + 1] = begin[r] + (begin[r + 1] ? begin[r + 1] : 1);
-}
-
-// Columns come in ascending order, so a row is filled from left to right: what is below the diagonal of
-// earlier columns, then its own. `begin` is pushed on by a row, and moved back at the end.
-static void fill_entries(const PetscSolver *solver, const FemMatrix *matrix, Rows *rows) {
-  int *next = rows->begin;
-  for (int u = 0, row = 0; u <= matrix->size; u++) {
-    int own = u < matrix->size ? solver->place[u] : solver->row_count;
-    for (; row < own; row++) { // prescribed ones: as stiff as a neighbour
-      int of = u > 0 ? u - 1 : u;
-      rows->column[next[row]] = row;
-      rows->value[next[row]++] = matrix->value[matrix->col_begin[of]];
-    }
-    if (u == matrix->size) break;
-    row++;
-    for (int k = matrix->col_begin[u]; k < matrix->col_begin[u + 1]; k++) {
-      int other = solver->place[matrix->row[k]];
-      rows->column[next[own]] = other;
-      rows->value[next[own]++] = matrix->value[k];
-      if (other == own) continue;
-      rows->column[next[other]] = own;
-      rows->value[next[other]++] = matrix->value[k];
-    }
-  }
-  for (int r = rows->count; r > 0; r--) next[r] = next[r - 1];
-  next[0] = 0;
-}
-
-static Status make_rows(const PetscSolver *solver, const FemMatrix *matrix, Rows *rows) {
-  size_t most = 2 * (size_t)matrix->entry_count + (size_t)solver->row_count;
-  if (most > INT_MAX)
-    return status_fail(STATUS_SOLVER, "%s: the matrix has more entries than can be numbered",
-                       names[solver->kind]);
-  rows->count = solver->row_count;
-  rows->begin = memory_zeroed((size_t)rows->count + 1, sizeof *rows->begin);
-  if (!rows->begin) return status_no_memory("the multigrid's matrix");
-  count_entries(solver, matrix, rows->begin);
-  size_t entries = (size_t)rows->begin[rows->count];
-  rows->column = memory_zeroed(entries, sizeof *rows->column);
-  rows->value = memory_zeroed(entries, sizeof *rows->value);
-  if (!rows->column || !rows->value) return status_no_memory("the multigrid's matrix");
-  fill_entries(solver, matrix, rows);
-  return STATUS_OK;
-}
-
-static Status wrap_rows(PetscSolver *solver, const Rows *rows, Mat *matrix) {
-  const FemPetscLibrary *petsc = solver->petsc;
-  PETSC_TRY("the matrix", petsc->MatCreateSeqAIJWithArrays(petsc->self, rows->count, rows->count, rows->begin,
-                                                           rows->column, rows->value, matrix));
-  PETSC_TRY("the matrix", petsc->MatSetBlockSize(*matrix, 3));
-  PETSC_TRY("the matrix", petsc->MatSetOption(*matrix, MAT_SYMMETRIC, PETSC_TRUE));
-  PETSC_TRY("the matrix", petsc->MatSetOption(*matrix, MAT_SPD, PETSC_TRUE));
-  return STATUS_OK;
-}
-
-static Status set_up(PetscSolver *solver, Mat matrix) {
-  const FemPetscLibrary *petsc = solver->petsc;
-  PETSC_TRY("the multigrid", petsc->PCCreate(petsc->self, &solver->multigrid));
-  PETSC_TRY("the multigrid", petsc->PCSetOptionsPrefix(solver->multigrid, prefixes[solver->kind]));
-  PETSC_TRY("the multigrid", petsc->PCSetType(solver->multigrid, solver->kind == BOOMER ? PCHYPRE : PCGAMG));
-  PETSC_TRY("the multigrid", petsc->PCSetOperators(solver->multigrid, matrix, matrix));
-  PETSC_TRY("the multigrid", petsc->PCSetFromOptions(solver->multigrid));
-  if (solver->kind == GAMG && solver->rest)
-    PETSC_TRY("the multigrid",
-              petsc->PCSetCoordinates(solver->multigrid, 3, solver->row_count / 3, solver->rest));
-  PETSC_TRY("the multigrid", petsc->PCSetUp(solver->multigrid));
-  return STATUS_OK;
-}
-
-// hypre has a matrix of its own.
-static Status convert(PetscSolver *solver, const Rows *rows, Mat *converted) {
-  const FemPetscLibrary *petsc = solver->petsc;
-  Mat own = NULL;
-  Status status = wrap_rows(solver, rows, &own);
-  if (!status) {
-    PetscErrorCode code = petsc->MatConvert(own, MATHYPRE, MAT_INITIAL_MATRIX, converted);
-    if (code) status = fail_in(solver, "the matrix", code);
-  }
-  if (own) petsc->MatDestroy(&own);
-  return status;
-}
-
-static Status coarsen(PetscSolver *solver, const Rows *rows) {
-  Mat converted = NULL;
-  TRY(convert(solver, rows, &converted));
-  Status status = STATUS_OK;
-  PetscErrorCode code = solver->petsc->MatSetBlockSize(converted, 3);
-  if (code) status = fail_in(solver, "the matrix", code);
-  if (!status) status = set_up(solver, converted);
-  solver->petsc->MatDestroy(&converted); // the multigrid has it
-  return status;
-}
-
-// The hierarchy is hypre's, the work with it our own, so hypre's copies go.
-static Status build_boomer(PetscSolver *solver, const FemMatrix *matrix) {
-  Rows rows = {0};
-  PetscErrorCode code = 0;
-  forget_multigrid(solver);
-  Status status = make_rows(solver, matrix, &rows);
-  if (!status) status = coarsen(solver, &rows);
-  FemRows finest = {rows.count, rows.count, rows.begin, rows.column, rows.value};
-  if (!status) status = fem_hierarchy_take(solver->petsc, solver->multigrid, &finest, &solver->cycle, &code);
-  if (code) status = fail_in(solver, "the multigrid", code);
-  if (solver->multigrid) solver->petsc->PCDestroy(&solver->multigrid);
-  solver->multigrid = NULL;
-  free_rows(&rows);
-  return status;
-}
-
-static Status build_gamg(PetscSolver *solver, const FemMatrix *matrix) {
-  forget_multigrid(solver);
-  TRY(make_rows(solver, matrix, &solver->rows));
-  TRY(wrap_rows(solver, &solver->rows, &solver->matrix));
-  return set_up(solver, solver->matrix);
-}
-
 // A new hierarchy, by one thread of the BLAS in it.
 static Status build(PetscSolver *solver, const FemMatrix *matrix) {
   fem_wear_renew(&solver->wear);
   int before = fem_solver_use_threads(1);
-  Status status = solver->kind == BOOMER ? build_boomer(solver, matrix) : build_gamg(solver, matrix);
+  Status status = fem_petsc_multigrid_build(&solver->multigrid, &solver->rows, matrix);
   fem_solver_use_threads(before);
-  if (status)
-    forget_multigrid(solver);
-  else
-    solver->stats.hierarchies++;
+  solver->stats.hierarchies += status == STATUS_OK;
   return status;
 }
 
@@ -381,7 +126,7 @@ static Status renew(PetscSolver *solver, const FemMatrix *matrix) {
     return status_fail(STATUS_RETRY, "the condensed matrix is not finite");
   if (!has_positive_diagonal(matrix))
     return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");
-  if ((solver->multigrid || solver->cycle.levels) && !solver->wear.is_worn) return STATUS_OK;
+  if (fem_petsc_multigrid_is_built(&solver->multigrid) && !solver->wear.is_worn) return STATUS_OK;
   return build(solver, matrix);
 }
 
@@ -400,8 +145,7 @@ static Status factorise(void *self, const FemMatrix *stiffness, const FemMatrix 
   (void)damping, (void)mass_of_unknown, (void)c;
   solver->current = NULL;
   if (!solver->layout || stiffness->layout != solver->layout)
-    return status_fail(STATUS_SOLVER, "%s: this layout of the matrix has not been analysed",
-                       names[solver->kind]);
+    return status_fail(STATUS_SOLVER, "%s: this layout of the matrix has not been analysed", name_of(solver));
   double began = clock_wall_s();
   Status status = renew(solver, stiffness);
   if (status == STATUS_OK) solver->current = stiffness;
@@ -414,24 +158,15 @@ static void aim(void *self, double tolerance) {
   solver->aimed = fem_wear_aim(solver->tolerance, tolerance);
 }
 
-static Status apply_gamg(PetscSolver *solver) {
-  double *right; // PETSc is informed that its numbers have changed
-  PETSC_TRY("a vector", solver->petsc->VecGetArray(solver->right_vec, &right));
-  PETSC_TRY("a vector", solver->petsc->VecRestoreArray(solver->right_vec, &right));
-  PETSC_TRY("the multigrid", solver->petsc->PCApply(solver->multigrid, solver->right_vec, solver->left_vec));
-  return STATUS_OK;
-}
-
 static Status precondition(void *self, const double *r, double *z) {
   PetscSolver *solver = self;
-#pragma omp parallel for schedule(static) if (solver->size > FEM_VECTOR_LONG)
-  for (int u = 0; u < solver->size; u++) solver->right[solver->place[u]] = r[u];
-  if (solver->kind == BOOMER)
-    fem_cycle_apply(&solver->cycle, solver->right, solver->left);
-  else
-    TRY(apply_gamg(solver));
-#pragma omp parallel for schedule(static) if (solver->size > FEM_VECTOR_LONG)
-  for (int u = 0; u < solver->size; u++) z[u] = solver->left[solver->place[u]];
+  const FemVertexRows *rows = &solver->rows;
+  FemPetscMultigrid *multigrid = &solver->multigrid;
+#pragma omp parallel for schedule(static) if (rows->size > FEM_VECTOR_LONG)
+  for (int u = 0; u < rows->size; u++) multigrid->right[rows->place[u]] = r[u];
+  TRY(fem_petsc_multigrid_apply(multigrid));
+#pragma omp parallel for schedule(static) if (rows->size > FEM_VECTOR_LONG)
+  for (int u = 0; u < rows->size; u++) z[u] = multigrid->left[rows->place[u]];
   return STATUS_OK;
 }
 
@@ -439,7 +174,7 @@ static Status iterate(PetscSolver *solver, const double *b, double *x, int limit
   FemCgProblem problem = {.matrix = solver->current,
                           .precondition = precondition,
                           .self = solver,
-                          .name = names[solver->kind],
+                          .name = name_of(solver),
                           .tolerance = solver->aimed,
                           .limit = limit};
   long long before = solver->stats.iterations;
@@ -468,14 +203,14 @@ static Status solve_by(PetscSolver *solver, const double *b, double *x) {
 
 static Status solve(void *self, const double *b, double *x) {
   PetscSolver *solver = self;
-  if (!solver->current) return status_fail(STATUS_SOLVER, "%s: no matrix to solve with", names[solver->kind]);
+  if (!solver->current) return status_fail(STATUS_SOLVER, "%s: no matrix to solve with", name_of(solver));
   double began = clock_wall_s(), factorised_s = solver->stats.factorise_s;
   int before = fem_solver_use_threads(solver->threads);
   Status status = solve_by(solver, b, x);
   fem_solver_use_threads(before);
   solver->stats.solves++;
   solver->stats.solve_s += clock_wall_s() - began - (solver->stats.factorise_s - factorised_s);
-  if (!status && !fem_vector_is_finite(solver->size, x))
+  if (!status && !fem_vector_is_finite(solver->rows.size, x))
     return status_fail(STATUS_RETRY, "the solution of the condensed system is not finite");
   return status;
 }
