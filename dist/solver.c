@@ -62,7 +62,7 @@ static void fail_in(const DistSolver *solver, const char *what, PetscErrorCode c
     if (code_) fail_in(solver, what, code_);                                                                 \
   } while (0)
 
-// As of one process (fem/sparse/petsc/solver_petsc.c), but for the sweeps: across ranks those of Gauss and
+// As of one process (fem/sparse/petsc/multigrid.c), but for the sweeps: across ranks those of Gauss and
 // Seidel need not converge, and with l1 they do (Baker, Falgout, Kolev and Yang 2011); one forward down and
 // one backward up is symmetric.
 static void set_options(void) {

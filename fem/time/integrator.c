@@ -14,6 +14,7 @@
 #include "fem/sparse/vector.h"
 #include "fem/time/error_weights.h"
 #include "fem/time/newton/balance.h"
+#include "fem/time/newton/ida_failure.h"
 #include "fem/time/newton/ida_solver.h"
 #include "fem/time/newton/newton.h"
 #include "fem/time/nvector.h"
@@ -66,6 +67,8 @@ static void scatter(FemIntegrator *integrator, double time, N_Vector y) {
   fem_system_scatter(integrator->system, time, u, u + integrator->part.n, integrator->state);
 }
 
+// ---- What IDA and Newton's method ask for.
+
 // r = [u̇ − v; M v̇ − f(u, v, t)]
 static int residual(sunrealtype time, N_Vector y, N_Vector y_dot, N_Vector r, void *self) {
   FemIntegrator *integrator = self;
@@ -78,7 +81,7 @@ static int residual(sunrealtype time, N_Vector y, N_Vector y_dot, N_Vector r, vo
   N_VScale(1, y, integrator->evaluated);
   integrator->evaluated_time = time;
   scatter(integrator, time, y);
-  int answer = fem_ida_solver_answer(&integrator->failure, fem_system_forces(system, integrator->state));
+  int answer = fem_ida_failure_answer(&integrator->failure, fem_system_forces(system, integrator->state));
   if (answer != 0) return answer;
 #pragma omp parallel for schedule(static) if (n > FEM_VECTOR_LONG)
   for (int i = 0; i < n; i++) {
@@ -94,7 +97,7 @@ static int jacobian(sunrealtype time, sunrealtype c, N_Vector y, N_Vector y_dot,
   FemIntegrator *integrator = self;
   scatter(integrator, time, y);
   Status status = fem_ida_solver_assemble(integrator->solver, integrator->state, c);
-  return fem_ida_solver_answer(&integrator->failure, status);
+  return fem_ida_failure_answer(&integrator->failure, status);
 }
 
 // IDA asks before every step.
@@ -128,6 +131,8 @@ static double unbalance(void *self, const double *balance) {
   return fem_balance_excess(&integrator->balance, system->model, &integrator->part, system->forces,
                             contact ? contact->given_forces : NULL, balance);
 }
+
+// ---- Creation.
 
 static Status check_def(const FemIntegratorDef *def) {
   if (!(def->displacement_tolerance > 0) || !(def->velocity_tolerance > 0) ||
@@ -252,6 +257,8 @@ static FemStall *stall_of(FemIntegrator *integrator) {
   return integrator->def.stall ? integrator->def.stall : &integrator->own_stall;
 }
 
+// ---- Start.
+
 // v̇ = M⁻¹ f at (t, y), and ẏ = [v; v̇].
 static Status find_derivatives(FemIntegrator *integrator, double time) {
   FemSystem *system = integrator->system;
@@ -331,6 +338,8 @@ Status fem_integrator_restart(FemIntegrator *integrator, double time, const doub
   return STATUS_OK;
 }
 
+// ---- The solution within a step.
+
 // The solution at `time` in `interpolated`.
 static Status interpolate(FemIntegrator *integrator, double time) {
   if (integrator->is_started && time == integrator->time) { // to the last bit
@@ -351,47 +360,12 @@ Status fem_integrator_at(FemIntegrator *integrator, double time, const double **
   return STATUS_OK;
 }
 
-static FemReason reason_of(int flag) {
-  switch (flag) {
-  case IDA_ERR_FAIL:
-    return (FemReason){"the error of a step stayed above the tolerance however short the step",
-                       "a larger time.tolerance, a smaller contact.stiffness, some effects.damping, or a "
-                       "smaller time.min_step if the scene names one"};
-  case IDA_CONV_FAIL:
-  case IDA_LSETUP_FAIL:
-  case IDA_LSOLVE_FAIL:
-  case IDA_NLS_FAIL:
-    return (FemReason){"Newton's method did not converge however short the step",
-                       "a smaller contact.stiffness, some effects.damping, a smaller time.min_step, or "
-                       "solver.linear: cholmod"};
-  case IDA_RES_FAIL:
-  case IDA_REP_RES_ERR:
-    return (FemReason){"the forces could not be evaluated however short the step",
-                       "a smaller time.max_step, or a larger contact.margin"};
-  case IDA_TOO_MUCH_ACC:
-    return (FemReason){"the tolerance is finer than the numbers are", "a larger time.tolerance"};
-  default:
-    return (FemReason){"IDA gave up", "a larger time.tolerance, or a smaller contact.stiffness"};
-  }
-}
+// ---- Failures.
 
-// The number in y of the unknown with the largest estimated error if the error test failed, else with the
-// largest unbalanced force.
+// The number in y of the unknown that is to blame for the flag.
 static int find_worst(FemIntegrator *integrator, int flag) {
-  const FemPart *part = &integrator->part;
-  int n = integrator->n;
-  N_Vector errors = integrator->interpolated, weights = integrator->weights;
-  if (flag == IDA_ERR_FAIL && IDAGetEstLocalErrors(integrator->ida, errors) == IDA_SUCCESS &&
-      IDAGetErrWeights(integrator->ida, weights) == IDA_SUCCESS)
-    return fem_part_worst(part, values_of(errors), values_of(weights), 0, 2 * n);
-  double time, c;
-  N_Vector y, y_dot, y_predicted, y_dot_predicted, r;
-  void *self;
-  if (IDAGetNonlinearSystemData(integrator->ida, &time, &y_predicted, &y_dot_predicted, &y, &y_dot, &r, &c,
-                                &self) == IDA_SUCCESS &&
-      r)
-    return fem_part_worst(part, values_of(r), NULL, n, 2 * n);
-  return 0;
+  return fem_ida_failure_worst(integrator->ida, flag, &integrator->part, integrator->interpolated,
+                               integrator->weights);
 }
 
 static Status say_why(const FemIntegrator *integrator, double time, double step, int worst,
@@ -413,7 +387,7 @@ static Status give_up(FemIntegrator *integrator, int flag) {
   double time = integrator->time, step = 0;
   IDAGetCurrentTime(integrator->ida, &time);
   IDAGetCurrentStep(integrator->ida, &step);
-  return say_why(integrator, time, step, find_worst(integrator, flag), reason_of(flag));
+  return say_why(integrator, time, step, find_worst(integrator, flag), fem_ida_failure_reason(flag));
 }
 
 // Counts the step, and the tries that failed before it.
@@ -434,6 +408,8 @@ static Status check_stall(FemIntegrator *integrator) {
             "tpn does, or some effects.damping"};
   return say_why(integrator, integrator->time, stats.last_step, find_worst(integrator, IDA_ERR_FAIL), reason);
 }
+
+// ---- Steps.
 
 // The next step ends at def.end at the latest, or just before the knot that what is prescribed has to be
 // followed to.
@@ -512,6 +488,8 @@ Status fem_integrator_step(FemIntegrator *integrator, double *time) {
 bool fem_integrator_is_at_knot(const FemIntegrator *integrator) {
   return integrator->is_at_knot;
 }
+
+// ---- Counts.
 
 FemIntegratorStats fem_integrator_stats(const FemIntegrator *integrator) {
   FemIntegratorStats stats = integrator->before;

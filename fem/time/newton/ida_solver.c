@@ -3,7 +3,6 @@
 
 #include <ida/ida.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/machine/clock.h"
@@ -46,17 +45,6 @@ struct FemIdaSolver {
   double *piece; // scratch, over ranks                        (part->count)
   double product_s;
 };
-
-int fem_ida_solver_answer(FemIdaFailure *failure, Status status) {
-  if (status == STATUS_OK) return 0;
-  if (status > 0) {
-    snprintf(failure->retry_message, sizeof failure->retry_message, "%s", status_message());
-    return 1;
-  }
-  failure->fatal = status;
-  snprintf(failure->fatal_message, sizeof failure->fatal_message, "%s", status_message());
-  return -1;
-}
 
 static Status factorise(FemIdaSolver *solver) {
   const FemMatrix *matrix = &solver->system->matrix;
@@ -195,7 +183,7 @@ static Status solve(FemIdaSolver *solver, const double *b, double *x) {
 static int set_up_callback(SUNLinearSolver linear, SUNMatrix matrix) {
   (void)matrix;
   FemIdaSolver *solver = linear->content;
-  return fem_direct_flag(fem_ida_solver_answer(solver->failure, factorise(solver)));
+  return fem_direct_flag(fem_ida_failure_answer(solver->failure, factorise(solver)));
 }
 
 static double solver_s(const FemIdaSolver *solver) {
@@ -210,7 +198,7 @@ static int solve_callback(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, 
   double began = clock_wall_s() - solver_s(solver);
   Status status = solve(solver, N_VGetArrayPointer(b), N_VGetArrayPointer(x));
   solver->product_s += clock_wall_s() - solver_s(solver) - began;
-  return fem_direct_flag(fem_ida_solver_answer(solver->failure, status));
+  return fem_direct_flag(fem_ida_failure_answer(solver->failure, status));
 }
 
 static Status create(FemIdaSolver *solver, SUNContext context) {

@@ -20,20 +20,8 @@
 
 #include "fem/effect/system.h"
 #include "fem/sparse/solver.h"
+#include "fem/time/newton/ida_failure.h"
 #include "fem/time/part.h"
-
-enum { FEM_IDA_MESSAGE_SIZE = 1024 };
-
-// What callbacks could not say through IDA: the fatal status that ended the run, and why the last steps were
-// refused.
-typedef struct FemIdaFailure {
-  Status fatal;                             // STATUS_OK: none
-  char fatal_message[FEM_IDA_MESSAGE_SIZE]; //
-  char retry_message[FEM_IDA_MESSAGE_SIZE]; // "" if nothing asked for a retry since it was cleared
-} FemIdaFailure;
-
-// Keeps the thread's message and returns what IDA's callbacks must: 0, 1 (recoverable) or −1.
-int fem_ida_solver_answer(FemIdaFailure *failure, Status status);
 
 typedef struct FemIdaSolver FemIdaSolver; // opaque
 
