@@ -431,7 +431,7 @@ static Status accept(FemSystem *system, const FemState *state, double next_step)
 // numbers and their negatives, whose largest over ranks must be those.
 static Status compare_states(const FemSystem *system, const FemState *state) {
   uint64_t sum = 1469598103934665603u, bits;
-  for (int i = 0; i < 6 * system->model->vertex_count; i++) {
+  for (size_t i = 0; i < 6 * (size_t)system->model->vertex_count; i++) {
     const double *value = i % 2 ? state->velocities + i / 2 : state->positions + i / 2;
     memcpy(&bits, value, sizeof bits);
     sum = (sum ^ bits) * 1099511628211u;

@@ -158,7 +158,7 @@ void fem_recorder_destroy(FemRecorder *recorder) {
 }
 
 Status fem_recorder_clear(const FemRecorder *recorder) {
-  static const char *const names[] = {"frames.pvd", "history.csv", "summary.json"};
+  static const char *const names[] = {"frames.pvd", "obstacles.vtu", "history.csv", "summary.json"};
   if (!recorder->directory) return STATUS_OK;
   int frames = file_remove_numbered(recorder->directory, "frame_", ".vtu") +
                file_remove_numbered(recorder->directory, "frame_", ".pvtu");
@@ -177,7 +177,7 @@ Status fem_recorder_clear(const FemRecorder *recorder) {
 
 enum { FEW_ELEMENTS = 4000 }; // for one thread
 
-// `covered` (contact_evaluate) NULL: nothing is.
+// `covered`: the covered volume of each element [m³]; NULL: nothing is covered.
 static void measure_elements(FemRecorder *recorder, const double *positions, const double *covered,
                              FemMeasures *measures) {
   const FemModel *model = recorder->system->model;

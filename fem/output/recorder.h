@@ -46,8 +46,9 @@ Status fem_recorder_create(FemRecorder *recorder, FemSystem *system, const char 
 Status fem_recorder_continue(FemRecorder *recorder, JournalMark history, int frame_count);
 void fem_recorder_destroy(FemRecorder *recorder);
 
-// Removes the frames, lists, history and summary that an earlier run has left in the folder, and says so.
-// Called once the first state is known, so that a run that fails before it takes nothing away.
+// Removes the frames with those of obstacles, lists, history and summary that an earlier run has left in the
+// folder, and says so. To be called once the first state is known, so that a run that fails before it takes
+// nothing away.
 Status fem_recorder_clear(const FemRecorder *recorder);
 
 // The measures of a state, and its forces of contact (forces.h).

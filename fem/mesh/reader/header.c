@@ -194,7 +194,7 @@ static Status count_vtk_types(const char *at, const char *end, bool is_binary, l
     *tet_count += is_tet;
     // The others are points, lines and faces, which may mark the boundary.
     bool is_volume = (type >= 11 && type <= 16) || (type >= 24 && type <= 27) || type == 29 ||
-                     (type >= 31 && type <= 33) || type >= 41;
+                     (type >= 31 && type <= 33) || type == 37 || type >= 41;
     if (is_volume && !is_tet)
       return status_fail(
           STATUS_INPUT,

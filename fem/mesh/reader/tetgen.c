@@ -240,11 +240,15 @@ static Status read_ele_file(const char *path, FemMeshSource *source) {
   return status;
 }
 
-// `path` with another ending. NULL: no memory.
+// `path` with that ending, in capitals where its own is. NULL: no memory.
 static char *with_ending(const char *path, const char *ending) {
-  size_t stem = (size_t)(strrchr(path, '.') - path), size = stem + strlen(ending) + 1;
+  const char *dot = strrchr(path, '.');
+  size_t stem = (size_t)(dot - path), size = stem + strlen(ending) + 1;
   char *name = memory_zeroed(size, 1);
-  if (name) snprintf(name, size, "%.*s%s", (int)stem, path, ending);
+  if (!name) return NULL;
+  memcpy(name, path, stem);
+  for (size_t k = 0; ending[k]; k++)
+    name[stem + k] = (char)(isupper((unsigned char)dot[1]) ? toupper((unsigned char)ending[k]) : ending[k]);
   return name;
 }
 

@@ -11,8 +11,8 @@
 static const double SLENDER = 10, SPREAD = 1.5, LOAD_DEPTH = 0.05, HELD = 0.5;
 
 static bool is_held_by(const FemModelBody *body, const FemModelDriver *driver) {
-  int vertex = driver->dofs[0] / 3;
-  return driver->dof_count > 0 && vertex >= body->vertex_begin && vertex < body->vertex_end;
+  int vertex = driver->dof_count > 0 ? driver->dofs[0] / 3 : -1;
+  return vertex >= body->vertex_begin && vertex < body->vertex_end;
 }
 
 // How far along the axis the vertices reach that are held across it.

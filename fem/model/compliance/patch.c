@@ -9,12 +9,13 @@
 
 enum { SAMPLES = 129 }; // of a motion or a load's factor in time
 
-// The end, and times that no period shares: multiples of the golden ratio.
+// The k-th time at which a motion or a factor is sampled: the end, then times that no period shares,
+// multiples of the golden ratio.
 static double sample_time(const FemModel *model, int k) {
   return model->scene->end * (k == 0 ? 1 : fmod(k * 0.6180339887498949, 1));
 }
 
-// ... after them the rows of a table, of rows of `width` numbers; beyond the end the end.
+// After these samples, the time of a row of a table whose rows have `width` numbers, within the run.
 static double table_time(const FemModel *model, const double *table, int width, int row) {
   return fmin(fmax(table[(size_t)width * (size_t)row], 0), model->scene->end);
 }

@@ -234,6 +234,18 @@ START_TEST(tetgen_files_may_count_from_zero_and_hold_comments_and_attributes) {
 }
 END_TEST
 
+START_TEST(tetgen_files_in_capitals_belong_together) {
+  put("B.NODE", NODES), put("B.ELE", "1 4 0\n0  0 1 2 3\n");
+  const char *names[] = {"B.NODE", "B.ELE"};
+  for (int k = 0; k < 2; k++) {
+    FemMesh mesh;
+    ck_assert_ok(fem_mesh_read(&mesh, scratch(names[k]), NULL, NULL));
+    ck_assert_int_eq(mesh.vertex_count, 4);
+    fem_mesh_destroy(&mesh);
+  }
+}
+END_TEST
+
 // Reading says that it turned an element: once, however many bodies are made of the file.
 START_TEST(a_file_of_several_bodies_is_read_once) {
   char command[512], count[8] = "";
@@ -274,6 +286,7 @@ int main(void) {
   tcase_add_loop_test(cases, our_meshes_are_what_their_readme_says, 0, 8);
   tcase_add_test(cases, the_rest_of_a_boundary_is_a_group);
   tcase_add_test(cases, tetgen_files_may_count_from_zero_and_hold_comments_and_attributes);
+  tcase_add_test(cases, tetgen_files_in_capitals_belong_together);
   tcase_add_test(cases, a_file_of_several_bodies_is_read_once);
   return suite_run("mesh_read", cases, 60);
 }

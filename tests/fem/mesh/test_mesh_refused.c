@@ -57,6 +57,10 @@ START_TEST(other_elements_are_refused_by_name) {
                "0 0 1 1 0 1 1 1 1 0 1 1\nCELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n");
   expect_refusal(STATUS_INPUT, scratch("a.vtk"), "cell 0 is a hexahedron",
                  "only tetrahedra (types 10 and 24)", NULL);
+  // A triquadratic pyramid is a volume, too, though its number lies between those of curves and faces.
+  put("a.vtk", "# vtk DataFile Version 2.0\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0 1 "
+               "0 0 0 1 0 0 0 1\nCELLS 2 10\n4 0 1 2 3\n4 0 1 2 3\nCELL_TYPES 2\n10\n37\n");
+  expect_refusal(STATUS_INPUT, scratch("a.vtk"), "cell 1 is a volume cell (VTK type 37)", NULL);
 }
 END_TEST
 
