@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tetrahedra in vector lanes, linear and quadratic: forces and matrices of eight elements of one body at
-// once, a lane an element. The formulas are those of fem/element/element.h and fem/material. The fourth-order
-// tangent is never formed (law.inc): contracted with two nodes' gradients g_a, g_b, its terms are
+// once, an element a lane. The formulas are those of fem/element/element.h and fem/material. The fourth-order
+// tangent ∂P/∂F is a sum of terms (law.inc), and linear elements never form it. Each term contracted with two
+// nodes' gradients g_a, g_b is a 3 × 3 block:
 //
 //   ∂P/∂F            between nodes a and b
 //   I                g_a·g_b I
@@ -12,9 +13,9 @@
 //   S on the right   (g_a·S g_b) I
 //   in the axes of F = U σ Vᵀ, U K' Uᵀ with K' of Vᵀ g_a, Vᵀ g_b
 //
-// Between unit vectors they are ∂P/∂F itself, which a point of a quadratic element, with its 45 pairs of
-// nodes, is contracted with. The same source is compiled for each instruction set. A lane's result depends on
-// its element alone.
+// Between unit vectors the blocks are ∂P/∂F itself. It is found so at each point of a quadratic element and
+// contracted with its 45 pairs of nodes. The same source is compiled for each instruction set. A lane's
+// result depends on its element alone.
 #ifndef TETLAP_FEM_LANES_LANES_H
 #define TETLAP_FEM_LANES_LANES_H
 
@@ -24,8 +25,8 @@
 enum {
   FEM_LANES = 8,
   FEM_LANES_ENTRIES = 78, // of the lower half of an element's matrix
-  FEM_LANES_SLOTS = 14,
-  FEM_LANES_HALF = 465, // of the lower half of a quadratic element's matrix
+  FEM_LANES_SLOTS = 14,   // of nodes, of pairs of nodes, and lengths: 4 + 6 + 4
+  FEM_LANES_HALF = 465,   // of the lower half of a quadratic element's matrix
 };
 
 typedef double FemLanesRow[FEM_LANES];
@@ -50,9 +51,10 @@ typedef struct FemLanesQuadratics {
   int element[FEM_LANES]; // the model's numbers
 } FemLanesQuadratics;
 
-// The matrix's order: of nodes 0 … 3 the columns of their own lower triangle, then of the pairs 01, 02, 03,
-// 12, 13, 23 the columns of the first, three rows of the second each. A slot is where such a block's first
-// entry lies; the last four are how long the first column of each node is.
+// Kernels of one instruction set. The entries of a matrix are ordered so: of nodes 0 … 3 the columns of their
+// own lower triangle, then of the pairs 01, 02, 03, 12, 13, 23 the columns of the first node, three rows of
+// the second each. Slots say where these ten blocks begin in the values of a FemMatrix; the last four are how
+// long the first column of each node is.
 typedef struct FemLanes {
   const char *name;
   // positions and velocities (vertices, 3); force (12) by node and coordinate.
@@ -62,16 +64,16 @@ typedef struct FemLanes {
                  double scale, FemLanesRow matrix[FEM_LANES_ENTRIES]);
   void (*damping_force)(const FemMaterial *material, double beta, const FemLanesElements *e,
                         const double *positions, const double *velocities, FemLanesRow force[12]);
-  // stiffness_scale · (symmetric part of −∂f/∂x) + damping_scale · (−∂f/∂v).
+  // stiffness_scale · (the geometric part of −∂f/∂x, see viscous.inc) + damping_scale · (−∂f/∂v).
   void (*damping_matrix)(const FemMaterial *material, double beta, const FemLanesElements *e,
                          const double *positions, const double *velocities, double stiffness_scale,
                          double damping_scale, FemLanesRow matrix[FEM_LANES_ENTRIES]);
-  // Energy [J] and what damping takes [W], by element.
+  // Energy [J], and the power that damping dissipates [W], of each element.
   void (*energy)(const FemMaterial *material, const FemLanesElements *e, const double *positions,
                  FemLanesRow energy);
   void (*damping_power)(const FemMaterial *material, double beta, const FemLanesElements *e,
                         const double *positions, const double *velocities, FemLanesRow power);
-  // Adds lanes in ascending order. A slot −1 in the first row: that lane is left out.
+  // Add lanes in ascending order. A lane whose first slot is −1 is left out.
   void (*scatter_force)(const FemLanesElements *e, FemLanesRow force[12], double *to);
   void (*scatter_matrix)(const FemLanesElements *e, int slots[FEM_LANES_SLOTS][FEM_LANES],
                          FemLanesRow matrix[FEM_LANES_ENTRIES], double *value);
@@ -95,11 +97,11 @@ typedef struct FemLanes {
                                    FemLanesRow matrix[FEM_LANES_HALF], double *value);
 } FemLanes;
 
-// The widest that this processor has; all that it has, in an array of `*count`.
+// The widest kernels that this processor has, and all that it has, in an array of `*count`.
 const FemLanes *fem_lanes(void);
 const FemLanes *const *fem_lanes_list(int *count);
 
-// The matrix of one lane, nodes in its order.
+// The matrix (12, 12) of one lane, nodes in its order.
 void fem_lanes_unpack(FemLanesRow matrix[FEM_LANES_ENTRIES], int lane, double dense[144]);
 
 extern const FemLanes fem_lanes_portable;

@@ -66,7 +66,7 @@ Status fem_mesh_middles_number(FemMeshMiddles *middles, const FemMeshSource *sou
   FemMeshEdge *edges;
   *middles = (FemMeshMiddles){0};
   TRY(fem_mesh_edges_list(&edges, source->tet_count, (const int(*)[4])source->tets));
-  // As many positions as there could be edges: what is too much is six numbers a tetrahedron at worst.
+  // Room for as many edges as there could be, six a tetrahedron.
   middles->rest = memory_zeroed(6 * (size_t)source->tet_count, sizeof(double[3]));
   middles->edge_of_vertex = memory_zeroed((size_t)source->vertex_count, sizeof *middles->edge_of_vertex);
   Status status = middles->rest && middles->edge_of_vertex ? take_edges(middles, source, edges)

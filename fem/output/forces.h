@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact and friction forces as they are written: those of a state, a frame's
-// within a step included, by the laws that move the bodies. So they follow from the frame's positions, and
-// friction and viscosity from its velocities and from what the last accepted state left (docs/output.md).
+// Contact and friction forces as they are written: those of a state, also of a frame within a step, by the
+// laws that move the bodies. They follow from the frame's positions; friction and viscosity follow also from
+// its velocities and from what the last accepted state left (docs/output.md).
 #ifndef TETLAP_FEM_OUTPUT_FORCES_H
 #define TETLAP_FEM_OUTPUT_FORCES_H
 
@@ -37,18 +37,18 @@ typedef struct FemForces {
 
 typedef enum FemContactStatus { FEM_CONTACT_OPEN, FEM_CONTACT_STICKS, FEM_CONTACT_SLIDES } FemContactStatus;
 
-// With forces of vertices, or of interfaces alone. Without contact all is NULL. A zeroed one, and one whose
-// creation failed, can be destroyed.
+// `with_vertices`: arrays over vertices, too, not of interfaces alone. Without contact all is NULL. A zeroed
+// one, and one whose creation failed, can be destroyed.
 Status fem_forces_create(FemForces *forces, const FemSystem *system, bool with_vertices);
 void fem_forces_destroy(FemForces *forces);
 
 bool fem_forces_has_friction(const FemSystem *system);
 
-// Those of a state, without areas and what is reported at the surface.
+// Finds those of a state, without areas and what is reported at the surface. STATUS_RETRY as evaluations.
 Status fem_forces_take(FemForces *forces, const FemState *state);
-// Of the same state, the areas of contact: surfaces are clipped for them.
+// Adds the areas of contact at the same state: surfaces are clipped for them.
 Status fem_forces_take_areas(FemForces *forces, const FemState *state);
-// Of the same state, what is reported at the surface.
+// Adds what is reported at the surface at the same state.
 Status fem_forces_take_surface(FemForces *forces, const FemState *state);
 
 #endif

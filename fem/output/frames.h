@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The frames of a run in its folder: frame_NNNNN.vtu (or .pvtu), what belongs to obstacles beside them, and
-// frames.pvd, which lists them. Where there are threads, and frames are not so close that
-// the run would wait for them, a frame is copied and written while the run goes on, one at a time, in their
-// order; a frame is listed once it is there.
+// frames.pvd, which lists them. A frame is copied and written while the run goes on if there are threads, and
+// if frames are so far apart that the run need not wait for them; one at a time, in their order. It is listed
+// once it is on the disk.
 #ifndef TETLAP_FEM_OUTPUT_FRAMES_H
 #define TETLAP_FEM_OUTPUT_FRAMES_H
 
@@ -24,7 +24,7 @@ typedef struct FemFrames {
   int count;                   // frames that are written
   int listed_count;            // of these in frames.pvd
   double listed_at_s;          // wall clock when it was written
-  double writing_s;            // a frame takes one thread about that long
+  double writing_s;            // about how long one thread takes to write a frame; 0: not known yet
   double left_at_s;            // wall clock when the last call ended
   const FemVtuFrame *next;     // that is being written
   FemVtuCopy copy;             // of it, if in the background

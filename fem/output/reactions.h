@@ -14,9 +14,9 @@ Status fem_reactions_add_columns(FemHistory *history, const FemModel *model);
 // Whether anything of a body is prescribed.
 bool fem_reactions_any(const FemModel *model);
 
-// Evaluates the forces, and fails as they do. `sums` (NULL: none): three for each
-// entry, in the columns' order, moved on to behind the last; `at` (NULL: none): of each vertex
-// (vertex_count, 3).
+// Evaluates the forces, and fails as they do. `sums` (NULL: not wanted) gets three numbers for each entry, in
+// the columns' order, and is moved on to behind the last [N]. `at` (NULL: not wanted) gets the reaction on
+// each vertex (vertex_count, 3) [N].
 Status fem_reactions_measure(FemSystem *system, const FemState *state, double **sums, double *at);
 
 #endif

@@ -5,9 +5,8 @@
 #ifndef TETLAP_FEM_OUTPUT_TROUBLE_H
 #define TETLAP_FEM_OUTPUT_TROUBLE_H
 
-#include <stddef.h>
-
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "base/files/record.h"
 #include "fem/model/model.h"

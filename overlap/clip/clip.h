@@ -2,10 +2,10 @@
 // The overlap models `clip`, `clip-scalar` and `clip32`: clipping in double precision, with the exact
 // gradient and Hessian of V; `clip32` in single.
 //
-// `clip-scalar` takes one pair at a time (polytope.h) and has the Hessian. `clip` takes as many pairs at
-// once as the processor's vectors have lanes (lanes.h, batch.c) and hands doubtful ones, all where
-// a Hessian is asked, and all on a processor without such vectors, to `clip-scalar`; that hands on to
-// `exact`. What one pair gets does not depend on which others come with it.
+// `clip-scalar` takes one pair at a time (polytope.h) and has the Hessian. `clip` takes as many pairs at once
+// as the processor's vectors have lanes (lanes.h, batch.c). It hands doubtful pairs to `clip-scalar`, and all
+// pairs where a Hessian is asked or the processor has no such vectors. `clip-scalar` hands doubtful pairs on
+// to `exact`. What one pair gets does not depend on which others come with it.
 //
 // Let A and B intersect in a polyhedron P (polytope.h), o one of its vertices. For face f of A or B with
 // outward area vector S_f, outward unit normal n_f and barycentric coordinates β, let P_f be the part of P's

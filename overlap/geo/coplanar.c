@@ -38,13 +38,9 @@ static void add_bend(const GeoMatrix *projector, const OverlapGeoClose *close, c
   bent->row[l][k] += factor * close->side * inverse_change;
 }
 
-void overlap_geo_coplanar_slope(const OverlapGeoCoplanar *coplanar, const GeoMatrix *projector,
-                                GeoMatrix *slope) {
-  find_share_slope(coplanar, projector, slope);
-}
-
-void overlap_geo_coplanar_bend(const OverlapGeoCoplanar *coplanar, const GeoMatrix *projector,
-                               const GeoMatrix *change, GeoMatrix *slope_change) {
+// The change of ∂w/∂P along a change of P.
+static void bend_share(const OverlapGeoCoplanar *coplanar, const GeoMatrix *projector,
+                       const GeoMatrix *change, GeoMatrix *slope_change) {
   memset(slope_change, 0, sizeof *slope_change);
   double ratio_change[OVERLAP_GEO_MOST_CLOSE];
   for (int c = 0; c < coplanar->count; c++)
@@ -61,14 +57,14 @@ void overlap_geo_coplanar_bend(const OverlapGeoCoplanar *coplanar, const GeoMatr
 }
 
 // Column j of ∇²w.
-static void bend_share(const OverlapGeoFrame *frame, const OverlapGeoCoplanar *coplanar,
-                       const OverlapGeoAdjoint *adjoint, const GeoMatrix *slope, int j, double *hessian) {
+static void find_column(const OverlapGeoFrame *frame, const OverlapGeoCoplanar *coplanar,
+                        const OverlapGeoAdjoint *adjoint, const GeoMatrix *slope, int j, double *hessian) {
   double direction[SIZE] = {0}, column[SIZE];
   direction[j] = 1;
   OverlapGeoTangent tangent;
   GeoMatrix slope_change;
   overlap_geo_frame_push(frame, direction, &tangent);
-  overlap_geo_coplanar_bend(coplanar, &frame->projector, &tangent.projector, &slope_change);
+  bend_share(coplanar, &frame->projector, &tangent.projector, &slope_change);
   overlap_geo_frame_bend(frame, adjoint, slope, &tangent, &slope_change, column);
   for (int i = 0; i < SIZE; i++) hessian[i * SIZE + j] = column[i];
 }
@@ -77,12 +73,12 @@ void overlap_geo_coplanar_pull(const OverlapGeoFrame *frame, const OverlapGeoCop
                                double gradient[24], double *hessian) {
   GeoMatrix slope; // ∂w/∂P
   OverlapGeoAdjoint adjoint;
-  overlap_geo_coplanar_slope(coplanar, &frame->projector, &slope);
+  find_share_slope(coplanar, &frame->projector, &slope);
   overlap_geo_frame_pull_phi(frame, &slope, &adjoint);
   memcpy(gradient, adjoint.gradient, sizeof adjoint.gradient);
   if (!hessian) return;
   int moved = overlap_geo_hessian_moved(frame), first = moved * SIZE / 2;
-  for (int j = first; j < first + SIZE / 2; j++) bend_share(frame, coplanar, &adjoint, &slope, j, hessian);
+  for (int j = first; j < first + SIZE / 2; j++) find_column(frame, coplanar, &adjoint, &slope, j, hessian);
   overlap_geo_hessian_complete(frame, moved, gradient, hessian);
 }
 

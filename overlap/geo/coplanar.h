@@ -21,21 +21,16 @@
 #include "overlap/geo/coplanar_types.h"
 #include "overlap/geo/frame.h"
 
+// The nearly coplanar faces of a pair, and their share.
 void overlap_geo_coplanar_find(const GeoMatrix *projector, OverlapGeoCoplanar *coplanar);
-
-// ∂w/∂P (symmetric), and its change along a change of P.
-void overlap_geo_coplanar_slope(const OverlapGeoCoplanar *coplanar, const GeoMatrix *projector,
-                                GeoMatrix *slope);
-void overlap_geo_coplanar_bend(const OverlapGeoCoplanar *coplanar, const GeoMatrix *projector,
-                               const GeoMatrix *change, GeoMatrix *slope_change);
 
 // ∇w (24) and, unless NULL, ∇²w (24, 24) by the vertices.
 void overlap_geo_coplanar_pull(const OverlapGeoFrame *frame, const OverlapGeoCoplanar *coplanar,
                                double gradient[24], double *hessian);
 
-// If the pair has a share, turns volume, gradient, hessian (24 × 24) and centroid of the network, all but the
-// first NULL if not wanted, to the blend and adds OVERLAP_BLENDED to the flags (may
-// be NULL). A Hessian needs the gradient.
+// If the pair has a share, turns volume, gradient, hessian (24 × 24) and centroid of the network to the blend
+// and adds OVERLAP_BLENDED to the flags. All but the volume may be NULL; a Hessian needs the gradient. Fails
+// as clipping.
 Status overlap_geo_coplanar_blend(const OverlapGeoFrame *frame, const double pair[24], double *volume,
                                   double *gradient, double *hessian, double *centroid, unsigned *flags);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Planes that nearly coincide, as coplanar.h has them. Its text is also part of what a device
-// compiles: it includes nothing.
+// Planes that nearly coincide, as coplanar.h has them. Its text is also part of what a device compiles: it
+// includes nothing.
 #ifndef TETLAP_OVERLAP_GEO_COPLANAR_TYPES_H
 #define TETLAP_OVERLAP_GEO_COPLANAR_TYPES_H
 

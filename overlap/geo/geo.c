@@ -12,14 +12,15 @@
 
 enum { SIZE = OVERLAP_PAIR_SIZE, HESSIAN_SIZE = SIZE * SIZE };
 
-// Of one P: in a pack of its own.
-static void find_features(const OverlapGeoModel *model, const GeoMatrix *projector, double *features) {
+void overlap_geo_features_onset(const OverlapGeoFeatureSet *set, double *features) {
+  GeoMatrix onset;
   GeoSymmetric packed = {{{0}}};
   OverlapGeoInvariants invariants;
   GeoPack packs[OVERLAP_GEO_MAX_FEATURES];
-  geo_pack_matrix(projector, 0, &packed);
-  overlap_geo_features_kernel()->features(model->set, &packed, &invariants, packs);
-  geo_unpack_numbers(packs, model->set->count, 0, features);
+  overlap_geo_frame_onset(&onset);
+  geo_pack_matrix(&onset, 0, &packed);
+  overlap_geo_features_kernel()->features(set, &packed, &invariants, packs);
+  geo_unpack_numbers(packs, set->count, 0, features);
 }
 
 static Status take_network(OverlapGeoModel *model, const OverlapGeoNetwork *network) {
@@ -37,10 +38,8 @@ Status overlap_geo_create(OverlapGeoModel *model, const OverlapGeoNetwork *netwo
   *model = (OverlapGeoModel){.kernel = overlap_geo_bundle_kernel(), .offset = log(1.28)};
   if (!network) return STATUS_OK;
   TRY(take_network(model, network));
-  GeoMatrix onset;
   double features[OVERLAP_GEO_MAX_FEATURES], value;
-  overlap_geo_frame_onset(&onset);
-  find_features(model, &onset, features);
+  overlap_geo_features_onset(model->set, features);
   TRY(network->eval(network->self, 1, features, &value, NULL));
   if (!isfinite(value))
     return status_fail(STATUS_INPUT, "the network's value at the onset of an overlap is %g", value);
@@ -126,7 +125,7 @@ static Status eval_network(const OverlapGeoModel *model, OverlapGeoBlock *block,
                                wants_gradient ? block->weights[0] : NULL);
 }
 
-// The same of the second derivatives, added to the curvature.
+// Second derivatives of ρ of a block's columns, likewise.
 static Status curve_rows(const OverlapGeoNetwork *network, const OverlapGeoBends *bends,
                          OverlapGeoColumn *second) {
   enum { COUNT = OVERLAP_GEO_DIRECTIONS, MOST = OVERLAP_GEO_MAX_FEATURES };
@@ -144,6 +143,7 @@ static Status curve_rows(const OverlapGeoNetwork *network, const OverlapGeoBends
   return STATUS_OK;
 }
 
+// Adds the network's part to the curvature.
 static Status add_network_curvature(const OverlapGeoNetwork *network, OverlapGeoBends *bends) {
   _Alignas(64) OverlapGeoColumn second[OVERLAP_GEO_DIRECTION_PAIRS];
   if (network->curve_columns)
@@ -263,7 +263,7 @@ typedef struct Beside {
   double *bounds;               // of the batch's pairs
 } Beside;
 
-// Before the model's own network, which takes the place of the other's output.
+// To be called before the model's own network, whose output takes the place of this one's.
 static Status write_bounds(const Beside *beside, const OverlapGeoBundle *bundle, int first,
                            OverlapGeoBlock *block) {
   TRY(eval_network(beside->bound, block, false, false));

@@ -59,8 +59,9 @@ typedef struct OverlapGeoModel {
   OverlapGeoNetwork network;
   const OverlapGeoBundleKernel *kernel;
   double offset; // ln 1.28 − ρ(f*)
-  // V is not the volume but a bound of another model's error: exp ρ V₀, not pinned, 0 where the frame cannot
-  // be had, and no other model is asked; where that one is blended with clip, it fades (geo/coplanar.h).
+  // V is not the volume but a bound of another model's error: exp ρ V₀ without the onset's part, 0 where the
+  // frame cannot be had. No other model is asked. Where that model is blended with clip, the bound fades
+  // (overlap/geo/coplanar.h).
   bool is_bound;
   bool is_alone; // pairs with nearly coplanar faces are not blended
 } OverlapGeoModel;
@@ -78,6 +79,9 @@ Status overlap_geo_eval(const OverlapGeoModel *model, const OverlapBatch *batch)
 // The same, and beside each V what `bound` makes of the same features: bounds (pair_count).
 Status overlap_geo_eval_bounded(const OverlapGeoModel *model, const OverlapGeoModel *bound,
                                 const OverlapBatch *batch, double *bounds);
+
+// f*, the features (set->count) of the onset P*.
+void overlap_geo_features_onset(const OverlapGeoFeatureSet *set, double *features);
 
 // What training the centroid needs of one pair: features (set->count), for the centroid `centroid` its z
 // (3) in a frame, and Σ_k e_mk q_k (plane_count, 3) in the same. Only with INSIDE anything is written.

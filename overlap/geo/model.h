@@ -15,7 +15,7 @@ typedef struct OverlapGeoOverlap {
 extern const OverlapOps overlap_geo_ops;
 extern const OverlapOps overlap_geo_small_ops;
 
-// From a weights file; `path` NULL: without a network. `*self` is a OverlapGeoOverlap.
+// From a weights file; `path` NULL: without a network. `*self` is an OverlapGeoOverlap.
 Status overlap_geo_model_create(void **self, const char *path);
 void overlap_geo_model_destroy(void *self);
 

@@ -370,7 +370,6 @@ Status fem_mesh_gmsh_model_take(const FemMeshGmshLibrary *gmsh, FemMeshSource *s
   return status;
 }
 
-// A surface must enclose a volume before gmsh is asked to fill it.
 Status fem_mesh_gmsh_model_check_shell(const FemMeshGmshLibrary *gmsh, size_t *triangle_count) {
   Nodes nodes = {0};
   Elements elements = {0};

@@ -9,11 +9,12 @@
 #include "fem/mesh/reader/gmsh_library.h"
 #include "fem/mesh/validate.h"
 
-// Into the zeroed `source`, which is the caller's to destroy, after a failure, too. STATUS_INPUT: it has none
-// but tetrahedra of one order, or more of anything than can be numbered.
+// Into the zeroed `source`, which the caller destroys, also after a failure. STATUS_INPUT: there are no
+// tetrahedra, tetrahedra of two orders, other volume elements, or more of anything than can be numbered.
 Status fem_mesh_gmsh_model_take(const FemMeshGmshLibrary *gmsh, FemMeshSource *source, bool has_groups);
 
-// A surface must enclose a volume before gmsh is asked to fill it; how many triangles it has.
+// Checks that the triangles in memory enclose a volume, before gmsh is asked to fill it, and counts them.
+// STATUS_INPUT: they do not (fem/mesh/reader/shell.h), or there are more than can be numbered.
 Status fem_mesh_gmsh_model_check_shell(const FemMeshGmshLibrary *gmsh, size_t *triangle_count);
 
 #endif

@@ -50,13 +50,13 @@ static Status read_source(FemMeshSource *source, const char *path, const FemMesh
   TRY(check_options(path, format, options));
   if (format == FEM_MESH_FORMAT_TETGEN) return fem_mesh_tetgen_read(source, path);
   TRY(fem_mesh_header_check(path, format, &header));
-  // Reading takes memory in proportion to the file (a 4-byte integer makes a pointer or two); meshing does
-  // not.
   if (is_meshed_here(format) && ranks()->count > 1)
     return status_fail(STATUS_USAGE,
                        "%s: is meshed by gmsh, which several ranks cannot do at once: mesh it first, as in "
                        "`tetlap mesh`, and name the mesh",
                        path);
+  // Reading takes memory in proportion to the file (a 4-byte integer makes a pointer or two); meshing does
+  // not.
   size_t limit = is_meshed_here(format) ? 0 : ((size_t)1 << 30) + 64 * header.size;
   return read_by_gmsh(source, path, format, options, &header, limit);
 }

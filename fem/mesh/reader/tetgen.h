@@ -6,8 +6,9 @@
 
 #include "fem/mesh/validate.h"
 
-// Reads NAME.node and NAME.ele, or NAME.NODE and NAME.ELE, given either name. Boundary markers other than 0 become groups marker_7.
-// STATUS_INPUT: the message names the file and the line. STATUS_IO: one of the two is missing.
+// Reads NAME.node and NAME.ele, or NAME.NODE and NAME.ELE, given either name. Boundary markers other than 0
+// become groups marker_7. STATUS_INPUT: the message names the file and the line. STATUS_IO: one of the two is
+// missing.
 Status fem_mesh_tetgen_read(FemMeshSource *source, const char *path);
 
 #endif

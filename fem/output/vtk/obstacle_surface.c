@@ -41,7 +41,7 @@ static int count_triangles(const FemObstacleDef *def) {
   case FEM_OBSTACLE_BALL:
     return 8 * BALL_ROWS * BALL_ROWS;
   case FEM_OBSTACLE_BOX:
-    return 3 * 8; // one at each end of an edge in each of its faces: three a corner
+    return 6 * 4; // four in each face, about its centre
   case FEM_OBSTACLE_CYLINDER:
     return 3 * 2 * CYLINDER_SIDES;
   }

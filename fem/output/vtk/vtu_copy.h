@@ -21,7 +21,7 @@ typedef struct FemVtuCopy {
 // What the arrays of a copy take [bytes].
 size_t fem_vtu_copy_bytes(const FemVtuFrame *frame);
 
-// Whatever a `fill` gives is asked for by several threads. STATUS_MEMORY: it does not fit.
+// Each `fill` is called by several threads at once. STATUS_MEMORY: the copy does not fit.
 Status fem_vtu_copy_take(FemVtuCopy *copy, const FemVtuFrame *frame);
 void fem_vtu_copy_destroy(FemVtuCopy *copy);
 

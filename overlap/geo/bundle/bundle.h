@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way of many pairs through `geo`, side by side in vector lanes: what gate.h, centre.h,
-// frame.h and features/features.h do for one. That scalar form serves training and pairs with coplanar faces, and
-// tests hold every instruction set against it: a change to one form is a change to both.
+// The way of many pairs through `geo`, side by side in vector lanes: what gate.h, centre.h, frame.h and
+// features/features.h do for one. That scalar form serves training and pairs with coplanar faces, and tests
+// hold every instruction set against it: a change to one form is a change to both.
 //
 //   pairs ─ gate ─► those that intersect, moved together ─ frame ─► P ─► features ─► ρ ─ pull ─► ∇ log V
 //                   (OverlapGeoBundle)                    blocks of OVERLAP_GEO_BLOCK columns
@@ -21,7 +21,7 @@
 enum {
   OVERLAP_GEO_BUNDLE = 128,    // pairs that are taken at once
   OVERLAP_GEO_BLOCK = 16,      // columns of features that a network is given at once
-  OVERLAP_GEO_DIRECTIONS = 12, // along which second derivatives are found: geo/hessian.h
+  OVERLAP_GEO_DIRECTIONS = 12, // along which second derivatives are found: overlap/geo/hessian.h
   OVERLAP_GEO_DIRECTION_PAIRS = OVERLAP_GEO_DIRECTIONS * (OVERLAP_GEO_DIRECTIONS + 1) / 2,
   OVERLAP_GEO_BUNDLE_ROW = OVERLAP_GEO_BUNDLE + OVERLAP_GEO_BLOCK + GEO_LANES, // and a pack beyond
 };
@@ -33,7 +33,7 @@ typedef struct OverlapGeoBundle {
   bool has_across; // given to the gate: derivatives and what is blended with them need `across`
   int count;
   int pair[OVERLAP_GEO_BUNDLE];                  // which of those given
-  bool is_enclosed[OVERLAP_GEO_BUNDLE];          //
+  bool is_enclosed[OVERLAP_GEO_BUNDLE];          // as in OverlapGeoGate
   OverlapGeoRow normal[3 * GEO_LANES];           // ∇s_k [1/m], component c of plane k in row 8 c + k
   OverlapGeoRow least_volume;                    // of the two tetrahedra [m³]
   OverlapGeoRow slack[GEO_LANES];                // at a point inside
@@ -53,7 +53,7 @@ typedef struct OverlapGeoBlock {
   OverlapGeoColumn invariants[sizeof(OverlapGeoInvariants) / sizeof(GeoPack)];
   OverlapGeoColumn volume;   // V₀ [m³]
   OverlapGeoColumn is_fit;   // 1; or 0: the scalar form must say what is wrong
-  OverlapGeoColumn is_close; // 1: coplanar faces give the exact volume a share (geo/coplanar.h)
+  OverlapGeoColumn is_close; // 1: coplanar faces give the exact volume a share (overlap/geo/coplanar.h)
   OverlapGeoColumn features[OVERLAP_GEO_MAX_FEATURES];
   OverlapGeoColumn weights[OVERLAP_GEO_MAX_FEATURES]; // dρ/df, from the network
   OverlapGeoColumn factor;                            // what `pull` multiplies with

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packs for any processor: two numbers, and what vector types of C lack. Private to geo_bundle*.c; the same
-// operations are in pack_avx2.h and pack_avx512.h.
+// Packs for any processor: two numbers, and the operations that vector types of C lack. Included by
+// overlap/geo/bundle/*portable.c alone; pack_avx2.h and pack_avx512.h have the same operations.
 #ifndef TETLAP_OVERLAP_GEO_FEATURES_PACK_PORTABLE_H
 #define TETLAP_OVERLAP_GEO_FEATURES_PACK_PORTABLE_H
 

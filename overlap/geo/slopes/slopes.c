@@ -253,23 +253,12 @@ static Status add_pair(const OverlapGeoModel *model, const double pair[24], cons
   return STATUS_OK;
 }
 
-static void find_onset(const OverlapGeoModel *model, double *features) {
-  GeoMatrix onset;
-  GeoSymmetric packed = {{{0}}};
-  OverlapGeoInvariants invariants;
-  GeoPack packs[OVERLAP_GEO_MAX_FEATURES];
-  overlap_geo_frame_onset(&onset);
-  geo_pack_matrix(&onset, 0, &packed);
-  overlap_geo_features_kernel()->features(model->set, &packed, &invariants, packs);
-  geo_unpack_numbers(packs, model->set->count, 0, features);
-}
-
 static Status list_rows(const OverlapGeoModel *model, int count, const double *pairs, const double *by,
                         Rows *rows) {
   double onset[OVERLAP_GEO_MAX_FEATURES], by_rho = 0;
   for (int i = 0; i < count; i++)
     TRY(add_pair(model, pairs + SIZE * (size_t)i, by + 4 * (size_t)i, rows, &by_rho));
-  find_onset(model, onset);
+  overlap_geo_features_onset(model->set, onset);
   add_row(rows, onset, -by_rho, NULL);
   return STATUS_OK;
 }
