@@ -27,16 +27,18 @@ typedef struct AppGradientAnswer {
   FemGradient gradient;
 } AppGradientAnswer;
 
-// All that can be refused is refused before the run, STATUS_INPUT. `stop` ends the run and its replay.
-// Destroy the answer also after a failure.
+// Runs the scene and differentiates. What can be refused is refused before the run: STATUS_INPUT. `stop` ends
+// the run and its replay. Destroy the answer also after a failure.
 Status app_gradient_answer(AppGradientAnswer *answer, const FemModel *model, const AppGradientWords *words,
                            const volatile sig_atomic_t *stop);
 void app_gradient_answer_destroy(AppGradientAnswer *answer);
 
-// That a replay may keep, to the nearest and at least 1; 0, what there is, of 0 alone.
+// The memory that a replay may take, rounded to whole bytes [B]. Of 0 it is 0, which sets no limit; of anything
+// more at least 1, and at most SIZE_MAX.
 size_t app_gradient_bytes(double megabytes);
 
-// Of contact, what its stiffness does: none, given, kept, follows.
+// What a derivative does with the contact stiffness, in a word: "none" (there is no contact), "given" (by the
+// scene), "kept" (chosen, and held as E and ν vary) or "follows" (chosen, and chosen anew as they vary).
 const char *app_gradient_stiffness(const FemModel *model, const AppGradientWords *words);
 
 #endif

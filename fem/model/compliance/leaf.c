@@ -6,8 +6,8 @@
 #include "fem/model/compliance/patch.h"
 #include "fem/model/parts.h"
 
-// Length over thickness of a leaf, at least; λ³/(L h²); the depth under the loads over the thickness, and the
-// length of what holds a leaf over its own, at most.
+// The least length over thickness of a leaf; λ³/(L h²); the most depth under the loads over the thickness; the
+// most length of what holds a leaf, over its own.
 static const double SLENDER = 10, SPREAD = 1.5, LOAD_DEPTH = 0.05, HELD = 0.5;
 
 static bool is_held_by(const FemModelBody *body, const FemModelDriver *driver) {
@@ -53,7 +53,8 @@ static double bending_of(const FemModel *model, int body, double height) {
   return fem_model_parts_least(model, body, plate_modulus) * height * height * height / 12;
 }
 
-// c at which the loads' sum presses two leaves together by that share, on a patch as long as λ.
+// The c at which the sum of the loads, on a patch as long as λ, presses two leaves LOAD_DEPTH of the thinner
+// one's thickness into each other.
 static double stiffness_of_loads(const FemModel *model, const int bodies[2], const FemExtent extents[2],
                                  double spread) {
   double force = 0, width = INFINITY, height = fmin(extents[0].height, extents[1].height);

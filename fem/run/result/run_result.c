@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/run/result/run_result.h"
-#include "fem/model/compliance/compliance.h"
 
 #include <assert.h>
 #include <math.h>
@@ -10,6 +9,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "fem/effect/contact/contact.h"
+#include "fem/model/compliance/compliance.h"
 #include "fem/model/limits.h"
 
 // Steps and order are those of the part.

@@ -401,7 +401,8 @@ START_TEST(a_run_without_such_obstacles_writes_frames_alone) {
   FemPvdList list;
   char command[256], *path, *text;
   size_t size;
-  snprintf(command, sizeof command, "touch %s/obstacles.vtu %s/obstacles_00001.vtu", folder, folder);
+  snprintf(command, sizeof command, "mkdir -p %s && touch %s/obstacles.vtu %s/obstacles_00001.vtu", folder,
+           folder, folder);
   ck_assert_int_eq(system(command), 0); // of an earlier run
   run_into_folder(
       &f, (const char *const[]){
