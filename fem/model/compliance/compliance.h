@@ -40,10 +40,10 @@
 // 4. Leaves that bend together have a bound of their own (leaf.h). But for them and tips the choice between
 // flat faces does not depend on the mesh.
 //
-// 5. Tips. Under a rigid cone of the half angle β the mean pressure is E* cot β/2 at any load, 1/E* = 1/E_A' +
-// 1/E_B' (Sneddon 1965). A tip that does not give way is pressed by c d/3 at the depth d: F = π c tan²β d³/3.
-// Where one of the two has a tip (tip.h), c is at least that with which it gives way at a fifth of the reach
-// h of its elements, whatever the curvature behind it:
+// 5. Tips. Under a rigid cone of the half angle β the mean pressure is E* cot β/2 at any load, 1/E* = 1/E_A'
+// + 1/E_B' (Sneddon 1965). A tip that does not give way is pressed by c d/3 at the depth d: F = π c tan²β
+// d³/3. Where one of the two has a tip (tip.h), c is at least that with which it gives way at a fifth of the
+// reach h of its elements, whatever the curvature behind it:
 //
 //   c = 1.5 E* cot β/(.2 h).
 //
