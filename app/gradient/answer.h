@@ -33,8 +33,8 @@ Status app_gradient_answer(AppGradientAnswer *answer, const FemModel *model, con
                            const volatile sig_atomic_t *stop);
 void app_gradient_answer_destroy(AppGradientAnswer *answer);
 
-// The memory that a replay may take, rounded to whole bytes [B]. Of 0 it is 0, which sets no limit; of anything
-// more at least 1, and at most SIZE_MAX.
+// The memory that a replay may take, rounded to whole bytes [B]. Of 0 it is 0, which sets no limit; of
+// anything more at least 1, and at most SIZE_MAX.
 size_t app_gradient_bytes(double megabytes);
 
 // What a derivative does with the contact stiffness, in a word: "none" (there is no contact), "given" (by the

@@ -175,7 +175,7 @@ static int compare_int(const void *left, const void *right) {
 
 // Sorts, and keeps one of each; returns how many there are then.
 static int sort_distinct(int *list, int count) {
-  qsort(list, (size_t)count, sizeof *list, compare_int);
+  if (count > 0) qsort(list, (size_t)count, sizeof *list, compare_int); // an empty list may be NULL
   int distinct = 0;
   for (int k = 0; k < count; k++)
     if (distinct == 0 || list[k] != list[distinct - 1]) list[distinct++] = list[k];

@@ -6,8 +6,8 @@
 #include "fem/model/compliance/patch.h"
 #include "fem/model/parts.h"
 
-// The least length over thickness of a leaf; λ³/(L h²); the most depth under the loads over the thickness; the
-// most length of what holds a leaf, over its own.
+// The least length over thickness of a leaf; λ³/(L h²); the most depth under the loads over the thickness;
+// the most length of what holds a leaf, over its own.
 static const double SLENDER = 10, SPREAD = 1.5, LOAD_DEPTH = 0.05, HELD = 0.5;
 
 static bool is_held_by(const FemModelBody *body, const FemModelDriver *driver) {

@@ -3,8 +3,8 @@
 //
 // Two meshes of the edge length h that are bent to the curvature κ lie up to h²κ/8 apart where their edges do
 // not match. A contact that is too stiff closes these gaps by force: between two leaves of which each bears
-// half a load, the force was four times the true one. A force Q per width at the end of leaves of the length L
-// bends them to κ = Q L/D. Through contact of the stiffness c it spreads along λ:
+// half a load, the force was four times the true one. A force Q per width at the end of leaves of the length
+// L bends them to κ = Q L/D. Through contact of the stiffness c it spreads along λ:
 //
 //   λ = (2 D/c)^(1/4),   1/D = 1/D_A + 1/D_B,   D = E' t³/12,   E' = E/(1 − ν²),
 //
