@@ -36,7 +36,7 @@ static const double TIP_DEPTH = 0.2;
 // Of every body; an obstacle is rigid and has none.
 typedef struct Give {
   FemExtent extent; // its height is L
-  double wall;      // L of an impact: no more than the thickness of what is slender [m]
+  double wall;      // L of an impact (thickness.h) [m]
   double inverse;   // 1/E [1/Pa]
   double give;      // (1 − HELD ν⁴)/E: of what is pressed between faces that hold it [1/Pa]; of several
                     // materials the mean over the volume, and no more than the skin's
@@ -115,9 +115,9 @@ static double give_of_material(const FemMaterial *material) {
 
 // Rays through all faces: not where nothing strikes, or c is given.
 static Status measure_wall(const FemModel *model, int body, double blow, Give *give) {
-  FemThickness found = {.is_slender = false};
+  FemThickness found = {.wall = give->extent.height};
   if (blow > 0) TRY(fem_thickness_find(model, body, &found));
-  give->wall = found.is_slender ? fmin(give->extent.height, found.thickness) : give->extent.height;
+  give->wall = found.wall;
   return STATUS_OK;
 }
 

@@ -17,9 +17,9 @@
 // 2. Impact. An impact may compress bodies by as much as their height. Two bodies that store the energy W of
 // the hardest impact of the scene (blow.h) press each other with p = √(2 W / (V_A/E_A + V_B/E_B)), V their
 // volumes. c is at least such that this p compresses the interface by 1 % of L. Here L is no more than the
-// thickness of what is slender (thickness.h): behind its middle nothing pushes back out. Beyond p = E the
-// bodies would have no height left. They are crushed, and their edges hold them apart. An edge of length L
-// that is pressed by d into a half-space stores c L d³/3, into a body 0.57 c L d³. With
+// wall of what is slender or hollow (thickness.h): behind its middle nothing pushes back out. Beyond p = E
+// the bodies would have no height left. They are crushed, and their edges hold them apart. An edge of length
+// L that is pressed by d into a half-space stores c L d³/3, into a body 0.57 c L d³. With
 //
 //   c = 50 q / L, against a shape without elements 100 q / L,     q = max(p, p²/E), E of the softer one
 //

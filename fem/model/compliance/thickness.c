@@ -3,14 +3,16 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/surface/surface.h"
 #include "fem/model/compliance/extent.h"
+#include "fem/model/limits.h"
 
 enum { MOST_SAMPLES = 400 };
-static const double SLENDER = 5, MOSTLY = 0.5;
+static const double SLENDER = 5, THICK = 3, MOSTLY = 0.5;
 
 // At one triangle.
 typedef struct Sample {
@@ -72,6 +74,15 @@ static void find_medians(Sample *samples, int count, double length, FemThickness
   thickness->layers = median(samples, kept)->layers;
 }
 
+// Between a fifth and a third of the length the wall of what is hollow goes over into the height.
+static double wall_of(Sample *samples, int count, const FemExtent *extent) {
+  qsort(samples, (size_t)count, sizeof *samples, by_thickness);
+  double thickness = median(samples, count)->thickness, least = extent->length / SLENDER;
+  double share = fmin(fmax((thickness - least) / (extent->length / THICK - least), 0), 1);
+  if (!(thickness < (1 - FEM_ROUNDING) * extent->height) || share == 1) return extent->height;
+  return thickness + share * (extent->height - thickness);
+}
+
 // At every so manieth face, in the order in which they were found.
 static Status measure_samples(const FemModel *model, ContactSurface *surface, int count, Sample *samples) {
   ContactSurfaceFace *faces = memory_zeroed((size_t)count, sizeof *faces);
@@ -91,10 +102,15 @@ Status fem_thickness_find(const FemModel *model, int body, FemThickness *thickne
   TRY(fem_extent_measure(model, body, &extent));
   TRY(contact_surface_find(&surface, (const int(*)[4])model->tets, range->tet_begin, range->tet_end));
   int count = surface.count < MOST_SAMPLES ? surface.count : MOST_SAMPLES;
-  Sample *samples = memory_zeroed((size_t)count, sizeof *samples);
+  Sample *samples = memory_zeroed(2 * (size_t)count, sizeof *samples);
   Status status = samples ? measure_samples(model, &surface, count, samples)
                           : status_no_memory("the thickness of a body");
-  if (!status) find_medians(samples, count, extent.length, thickness);
+  if (!status) {
+    memcpy(samples + count, samples, (size_t)count * sizeof *samples);
+    find_medians(samples, count, extent.length, thickness);
+    thickness->wall = wall_of(samples + count, count, &extent);
+    if (thickness->is_slender) thickness->wall = fmin(extent.height, thickness->thickness);
+  }
   memory_free(samples);
   contact_surface_destroy(&surface);
   return status;

@@ -12,6 +12,8 @@ typedef struct FemThickness {
   bool is_slender;
   double thickness; // median by area of where it is thin [m]; 0: it is not slender
   double layers;    // likewise, of the elements through it
+  double wall;      // what an impact has to go through: that thickness of what is slender, the height of what
+                    // is solid or has walls of a third of its length, in between what lies between [m]
 } FemThickness;
 
 // Of a body at rest; on a large surface of a few hundred triangles of it.

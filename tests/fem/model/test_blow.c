@@ -8,6 +8,7 @@
 #include "fem/mesh/mesh.h"
 #include "fem/model/compliance/compliance.h"
 #include "fem/model/compliance/extent.h"
+#include "fem/model/compliance/thickness.h"
 #include "fem/model/parts.h"
 #include "folder.h"
 #include "medit.h"
@@ -142,16 +143,16 @@ START_TEST(where_blows_are_light_the_press_decides) {
 }
 END_TEST
 
-// A ring about y of the radii .08 and .1 m, two elements thick, with a slit below: a box that is bent.
+// A ring about y, .08 m wide inside and two elements thick, with a slit below: a box that is bent.
 enum { ROUND = 24, ACROSS = 2, WIDE = 3 };
 static const double THICK = 0.02;
 
-static void write_ring(const char *path) {
+static void write_ring(const char *path, double thick, double wide) {
   FemMesh mesh;
-  ck_assert_ok(fem_mesh_box(&mesh, (double[]){1.96 * M_PI, THICK, 0.05}, (int[]){ROUND, ACROSS, WIDE}));
+  ck_assert_ok(fem_mesh_box(&mesh, (double[]){1.96 * M_PI, thick, wide}, (int[]){ROUND, ACROSS, WIDE}));
   for (int v = 0; v < mesh.vertex_count; v++) {
     double *x = mesh.rest + 3 * (size_t)v, angle = x[0] - 0.48 * M_PI, radius = 0.08 + x[1];
-    double place[3] = {radius * cos(angle), x[2] - 0.025, radius * sin(angle)};
+    double place[3] = {radius * cos(angle), x[2] - wide / 2, radius * sin(angle)};
     memcpy(x, place, sizeof place);
   }
   medit_write(&mesh, path);
@@ -165,7 +166,7 @@ START_TEST(a_spike_does_not_pass_the_wall_of_a_ring) {
   char path[128], mesh[160];
   snprintf(path, sizeof path, "%s/ring.mesh", folder);
   snprintf(mesh, sizeof mesh, "bodies.ring.mesh={file: %s}", path);
-  write_ring(path);
+  write_ring(path, THICK, 0.05);
   scene_open(&run, "ring", (const char *const[]){mesh, NULL});
   double stored = 0, thick = THICK * cos(0.98 * M_PI / ROUND); // between facets
   for (int b = 0; b < 2; b++)
@@ -181,6 +182,37 @@ START_TEST(a_spike_does_not_pass_the_wall_of_a_ring) {
 }
 END_TEST
 
+// What an impact takes for the wall of a ring, and its height and length.
+static double wall_of(double thick, FemExtent *extent) {
+  SceneRun run;
+  FemThickness found;
+  char path[128], mesh[160];
+  snprintf(path, sizeof path, "%s/ring.mesh", folder);
+  snprintf(mesh, sizeof mesh, "bodies.ring.mesh={file: %s}", path);
+  write_ring(path, thick, 0.2);
+  scene_open(&run, "ring", (const char *const[]){mesh, NULL});
+  ck_assert_ok(fem_extent_measure(&run.model, 0, extent));
+  ck_assert_ok(fem_thickness_find(&run.model, 0, &found));
+  ck_assert(found.is_slender == (found.wall < extent->length / 5));
+  scene_close(&run);
+  return found.wall;
+}
+
+START_TEST(from_a_thin_wall_to_a_thick_one_there_is_no_jump) {
+  FemExtent extent;
+  double last = 0;
+  for (int k = 0; k < 40; k++) {
+    double thick = 0.04 + 0.002 * k, wall = wall_of(thick, &extent);
+    if (k > 0) ck_assert_double_lt(wall / last, 1.12);
+    if (k > 0) ck_assert_double_ge(wall, last);
+    last = wall;
+  }
+  ck_assert_near(wall_of(0.03, &extent), 0.03, 0.01 * 0.03);
+  ck_assert_double_gt(extent.height, 2 * 0.03);
+  ck_assert_double_eq(wall_of(0.15, &extent), extent.height);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("blow");
   tcase_add_test(cases, a_body_strikes_with_what_it_falls);
@@ -193,5 +225,6 @@ int main(void) {
   tcase_add_test(cases, where_blows_are_light_the_press_decides);
   tcase_add_checked_fixture(cases, folder_make, folder_remove);
   tcase_add_test(cases, a_spike_does_not_pass_the_wall_of_a_ring);
+  tcase_add_test(cases, from_a_thin_wall_to_a_thick_one_there_is_no_jump);
   return suite_run("blow", cases, 30);
 }
