@@ -67,6 +67,16 @@ START_TEST(blocks_overlap_as_a_hand_computes) {
 }
 END_TEST
 
+START_TEST(far_from_all_there_is_no_pair_and_no_volume) {
+  double poses[12];
+  shift_to(poses, 0, 0, 50);
+  AppPosesResult result = run(1, poses, NULL);
+  ck_assert_int_eq(result.pair_count, 0);
+  for (int k = 0; k < 7; k++) ck_assert(result.sums[k] == 0);
+  app_poses_destroy(&result);
+}
+END_TEST
+
 // A turn about an axis through the moved centre, after `pose`.
 static void turn_further(const double pose[12], const double centre[3], int axis, double angle,
                          double turned[12]) {
@@ -228,6 +238,7 @@ int main(void) {
   open_model();
   TCase *cases = tcase_create("poses");
   tcase_add_test(cases, blocks_overlap_as_a_hand_computes);
+  tcase_add_test(cases, far_from_all_there_is_no_pair_and_no_volume);
   tcase_add_test(cases, the_wrench_is_minus_the_slope_of_v);
   tcase_add_loop_test(cases, every_device_gives_the_same_bits, 0, 3);
   tcase_add_test(cases, no_pair_that_overlaps_is_left_out);
