@@ -287,7 +287,7 @@ TABLES = {
                    {"steps": COST["steps"], "wall time [s]": value("wall_s", 3), **{phase: share_of(phase) for phase in PHASES}}, 1),
     "steps": Runs(["vertices", "solver"], [([vertices, solver], "benchmarks/scenes/blocks.yaml", (f"bodies.lower.mesh.box.cells={lower}", f"bodies.upper.mesh.box.cells={upper}",
                                                                                                  f"solver.linear={solver}"), ())
-                                           for solver, sizes in (("cholmod", ((1072, 6, 8), (10234, 14, 18), (30331, 20, 25))), ("amg", ((10234, 14, 18), (50344, 24, 30), (147989, 35, 44))))
+                                           for solver, sizes in (("cholmod", ((1072, 6, 8), (10234, 14, 18), (26837, 20, 25))), ("amg", ((10234, 14, 18), (45416, 24, 30), (137781, 35, 44))))
                                            for vertices, lower, upper in sizes],
                   {"processor time a step [s]": lambda summary, _: figure(summary["cpu_s"] / summary["steps"], 3), "Newton iterations": counter("newton_iterations"),
                    "factorisations": counter("factorisations"), "iterations a solve": lambda summary, _: figure((summary["counters"].get("linear_iterations") or 0) / max(1, summary["counters"]["linear_solves"])),
