@@ -57,7 +57,7 @@ static Status sleep_on(FemRunState *run) {
   TRY(fem_run_frames_take_row(run, &measures, &next));
   TRY(fem_run_frames_write_until(run, time));
   TRY(fem_recorder_append_step(&run->recorder));
-  run->audit = next;
+  fem_audit_accept(&run->audit, &next);
   run->time = time;
   fem_stall_pass(&run->stall, time - began);
   fem_run_frames_keep_extremes(run->result, &measures);

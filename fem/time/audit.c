@@ -111,9 +111,9 @@ void fem_audit_refuse(FemAudit *audit, const FemAudit *refused) {
 
 void fem_audit_accept(FemAudit *audit, const FemAudit *next) {
   const double power = power_of(audit, next), step = next->time - audit->time;
-  double own = power > 0 ? audit->own_power : 0;
+  double own = fmax(0, fmin(audit->own_power, 2 * power));
   bool is_short = step * (1 - FEM_ROUNDING) <= FEM_CUT * FEM_CUT * audit->refused_step;
-  if (is_short && power >= 0.5 * audit->refused_power) own = power;
+  if (is_short && power >= 0.5 * audit->refused_power && power <= 2 * audit->refused_power) own = power;
   *audit = *next;
   audit->own_power = own;
   audit->refused_power = audit->refused_step = 0;

@@ -13,10 +13,11 @@
 // (fem/output/trouble.h).
 //
 // Forces that are not the gradient of the energy, as a learned model's may be, give a power of their own,
-// however short the steps are; what an integrator errs by falls faster than the step. So where the step that
-// stands in the end, after FEM_CUT² of the length or less, gains with at least half of the power of the
-// longest that was refused from the same state, this is the forces' own power, and steps that gain with up
-// to twice as much are not refused, until one gains nothing.
+// however short the steps are; what an integrator errs by falls faster than the step, and what a jump gives
+// does not fall. So where the step that stands in the end, after FEM_CUT² of the length or less, gains with
+// half to twice the power of the longest that was refused from the same state, this is the forces' own power.
+// Steps that gain with up to twice as much are not refused. It is no more than twice that of any step since,
+// and none after a step that gains nothing.
 #ifndef TETLAP_FEM_TIME_AUDIT_H
 #define TETLAP_FEM_TIME_AUDIT_H
 

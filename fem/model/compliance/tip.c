@@ -7,13 +7,17 @@
 #include "base/vec3.h"
 #include "fem/model/compliance/extent.h"
 
-// The solid angle of a tip over that of a cube's corner, and its reach over the body's height, at most.
-static const double NARROW = 0.9, FINE = 0.5;
+// At most: the solid angle of a tip over that of a cube's corner, how far its edges lead across its axis over
+// how far along (√2 at a cube's corner, and more where it is sheared in a plane), its reach over the body's
+// height.
+static const double NARROW = 0.9, ACROSS = 1.2, FINE = 0.5;
 
 // Of a vertex.
 typedef struct Corner {
   double angle; // that its elements fill [sr]
   double reach; // the least of their longest edges there; 0: no element [m]
+  Vec3 axis;    // the mean of their directions
+  bool is_wide; // an edge there leads too far across the axis
 } Corner;
 
 // Van Oosterom and Strackee 1983.
@@ -23,17 +27,37 @@ static double angle_between(const Vec3 e[3], const double lengths[3]) {
   return 2 * atan2(volume, sum);
 }
 
-static void add_element(const FemModel *model, int tet, int corner, Corner *to) {
+// From a corner of an element.
+static void edges_of(const FemModel *model, int tet, int corner, Vec3 edges[3], double lengths[3]) {
   const int *vertices = model->tets[tet];
-  Vec3 x = vec3_at(model->rest + 3 * (size_t)vertices[corner]), edges[3];
-  double lengths[3], longest = 0;
+  Vec3 x = vec3_at(model->rest + 3 * (size_t)vertices[corner]);
   for (int k = 0; k < 3; k++) {
     edges[k] = vec3_sub(vec3_at(model->rest + 3 * (size_t)vertices[(corner + 1 + k) % 4]), x);
     lengths[k] = vec3_length(edges[k]);
+  }
+}
+
+static void add_element(const FemModel *model, int tet, int corner, Corner *to) {
+  Vec3 edges[3], middle = {0, 0, 0};
+  double lengths[3], longest = 0;
+  edges_of(model, tet, corner, edges, lengths);
+  for (int k = 0; k < 3; k++) {
+    middle = vec3_add(middle, vec3_scale(1 / lengths[k], edges[k]));
     longest = fmax(longest, lengths[k]);
   }
-  to->angle += angle_between(edges, lengths);
+  double angle = angle_between(edges, lengths);
+  to->angle += angle;
+  to->axis = vec3_add(to->axis, vec3_scale(angle / vec3_length(middle), middle));
   to->reach = to->reach > 0 ? fmin(to->reach, longest) : longest;
+}
+
+static void compare_edges(const FemModel *model, int tet, int corner, Corner *to) {
+  Vec3 edges[3];
+  double lengths[3];
+  edges_of(model, tet, corner, edges, lengths);
+  for (int k = 0; k < 3; k++)
+    if (vec3_length(vec3_cross(edges[k], to->axis)) > ACROSS * vec3_dot(edges[k], to->axis))
+      to->is_wide = true;
 }
 
 static bool may_meet(const FemModel *model, const FemModelBody *body, int vertex) {
@@ -44,7 +68,9 @@ static bool may_meet(const FemModel *model, const FemModelBody *body, int vertex
 
 static void look_at(const Corner *corner, double height, FemTip *tip) {
   double cosine = 1 - corner->angle / (2 * M_PI), slope = cosine / sqrt(1 - cosine * cosine);
-  if (!(corner->reach > 0) || corner->angle > NARROW * M_PI / 2 || corner->reach > FINE * height) return;
+  if (!(corner->reach > 0) || corner->is_wide || corner->angle > NARROW * M_PI / 2 ||
+      corner->reach > FINE * height)
+    return;
   if (!(tip->slope > 0) || slope * tip->reach > tip->slope * corner->reach)
     *tip = (FemTip){.slope = slope, .reach = corner->reach};
 }
@@ -59,6 +85,8 @@ Status fem_tip_find(const FemModel *model, int body, FemTip *tip) {
   if (!corners) return status_no_memory("the tips of a body");
   for (int i = range->tet_begin; i < range->tet_end; i++)
     for (int v = 0; v < 4; v++) add_element(model, i, v, &corners[model->tets[i][v] - begin]);
+  for (int i = range->tet_begin; i < range->tet_end; i++)
+    for (int v = 0; v < 4; v++) compare_edges(model, i, v, &corners[model->tets[i][v] - begin]);
   for (int v = 0; v < count; v++)
     if (may_meet(model, range, begin + v)) look_at(&corners[v], extent.height, tip);
   memory_free(corners);

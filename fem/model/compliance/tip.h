@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tip of a body with which it may meet others first: a vertex of its surface where the body is no wider
-// than a narrow cone. A vertex that cannot move, or that lies on a part of the boundary that is no surface,
-// is none.
+// than a narrow cone, in no direction. A vertex that is held or driven in a direction, or that lies on a part
+// of the boundary that is no surface, is none.
 #ifndef TETLAP_FEM_MODEL_COMPLIANCE_TIP_H
 #define TETLAP_FEM_MODEL_COMPLIANCE_TIP_H
 

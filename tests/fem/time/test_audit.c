@@ -183,7 +183,8 @@ START_TEST(what_forces_give_by_themselves_is_not_cut_down) {
     bool is_own;
   } cases[] = {{FEM_CUT, power, false},          {1.01 * shorter, power, false},
                {shorter, 0.49 * power, false},   {shorter, 0.51 * power, true},
-               {FEM_CUT * shorter, power, true}, {shorter, 5 * power, true}};
+               {FEM_CUT * shorter, power, true}, {shorter, 1.99 * power, true},
+               {shorter, 2.01 * power, false}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     FemAudit audit = run, middle = gaining(&run, FEM_CUT, power);
     fem_audit_refuse(&audit, &long_one);
@@ -202,6 +203,9 @@ START_TEST(what_forces_give_by_themselves_is_not_cut_down) {
   FemAudit held = run, still = gaining(&run, 1, 0);
   fem_audit_accept(&held, &less);
   ck_assert_double_eq(held.own_power, power);
+  FemAudit little = gaining(&held, 1, 0.25 * power);
+  fem_audit_accept(&held, &little);
+  ck_assert_near(held.own_power, 0.5 * power, 1e-9 * power);
   fem_audit_accept(&run, &still);
   ck_assert_double_eq(run.own_power, 0);
   ck_assert(fem_audit_is_refused(&bounds, &run, &less));
