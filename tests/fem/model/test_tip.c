@@ -112,7 +112,7 @@ START_TEST(boxes_and_balls_and_what_is_held_have_no_tip) {
   open_cone(&run, 16, 8, 2 * HEIGHT, NULL);
   ck_assert(find(&run, 1).slope == 0);
   scene_close(&run);
-  open_cone(&run, 16, 8, 2 * HEIGHT, (const char *const[]){"bodies.cone.place.scale=[1, 0.1, 1]", NULL});
+  open_cone(&run, 16, 8, 1.3 * HEIGHT, (const char *const[]){"bodies.cone.place.scale=[1, 0.3, 1]", NULL});
   ck_assert(find(&run, 1).slope == 0);
   scene_close(&run);
   scene_open(&run, "bowl", NULL);
