@@ -126,8 +126,8 @@ static const SceneSection law = {.help = "a pressure law p(d) in place of a stif
 static const SceneKey pair_keys[] = {
     {"bodies", SCENE_TWO, AT(FemContactPairDef, names), .required = "[block, ground]",
      .help = "two names, of bodies or a body and an obstacle; twice the same: a body with itself"},
-    {"stiffness", SCENE_NUMBER, AT(FemContactPairDef, stiffness), .unit = "Pa", .range = "(0, inf)",
-     .absent_help = "as between any two", .help = "κ between these two, as above"},
+    {"stiffness", SCENE_NUMBER, AT(FemContactPairDef, stiffness), .unit = "Pa/m", .range = "(0, inf)",
+     .absent_help = "as between any two", .help = "c or κ between these two, as above"},
     {"friction", SCENE_SECTION, AT(FemContactPairDef, friction), .section = &pair_friction,
      .absent_help = "as between any two", .help = "μ between these two, alone or a mapping"},
     {"law", SCENE_SECTION, AT(FemContactPairDef, law), .section = &law,
@@ -141,11 +141,11 @@ static const SceneSection pair = {.help = "values for two bodies",
                                   PLACE(FemContactPairDef, place)};
 
 static const SceneKey contact_keys[] = {
-    {"stiffness", SCENE_NUMBER, AT(FemContactDef, stiffness), .unit = "Pa", .range = "(0, inf)",
+    {"stiffness", SCENE_NUMBER, AT(FemContactDef, stiffness), .unit = "Pa/m", .range = "(0, inf)",
      .absent_help =
          "with `field` from height and E of each two bodies that meet, so that the overlap is 2 % of their "
          "compression; otherwise E of the softest body",
-     .help = "penalty stiffness κ; higher: less overlap, shorter steps (Pa/m with the potential `field`)"},
+     .help = "penalty stiffness c; higher: less overlap, shorter steps (κ in Pa with the potential `nodal`)"},
     {"potential", SCENE_CHOICE, AT(FemContactDef, potential), .fallback = "field",
      .choices = &app_scene_choices_potentials, .help = "how overlaps become pressure"},
     {"law", SCENE_SECTION, AT(FemContactDef, law), .section = &law, .absent_help = "linear, by `stiffness`",
