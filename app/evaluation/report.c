@@ -164,6 +164,8 @@ Status app_evaluation_print(const AppEvaluation *evaluation, const char *model, 
   fputs(evaluation->has_status ? "\nstatus: the sign of the logit, right if the closed tetrahedra meet\n"
                                : "\nstatus: V > 0, right if the pair shares volume; a touch counts as none\n",
         stream);
+  fputs("paper: Table 4 of TetrahedronPairNet, on its authors' pairs; those of --law paper-test are alike\n",
+        stream);
   return STATUS_OK;
 }
 
