@@ -18,6 +18,7 @@
 #include "dist/petsc.h"
 #include "dist/product.h"
 #include "dist/rows.h"
+#include "fem/sparse/petsc/multigrid.h"
 #include "fem/sparse/vector.h"
 #include "fem/sparse/wear.h"
 
@@ -62,18 +63,12 @@ static void fail_in(const DistSolver *solver, const char *what, PetscErrorCode c
     if (code_) fail_in(solver, what, code_);                                                                 \
   } while (0)
 
-// As of one process (fem/sparse/petsc/multigrid.c), but for the sweeps: across ranks those of Gauss and
+// As of one process (fem/sparse/petsc/multigrid.h), but for the sweeps: across ranks those of Gauss and
 // Seidel need not converge, and with l1 they do (Baker, Falgout, Kolev and Yang 2011); one forward down and
 // one backward up is symmetric.
 static void set_options(void) {
   static const char *const options[][2] = {
       {"-tetlap_amg_pc_type", "hypre"},
-      {"-tetlap_amg_pc_hypre_type", "boomeramg"},
-      {"-tetlap_amg_pc_hypre_boomeramg_coarsen_type", "HMIS"},
-      {"-tetlap_amg_pc_hypre_boomeramg_interp_type", "ext+i"},
-      {"-tetlap_amg_pc_hypre_boomeramg_P_max", "4"},
-      {"-tetlap_amg_pc_hypre_boomeramg_strong_threshold", "0.5"},
-      {"-tetlap_amg_pc_hypre_boomeramg_agg_nl", "1"},
       {"-tetlap_amg_pc_hypre_boomeramg_no_CF", NULL},
       {"-tetlap_amg_pc_hypre_boomeramg_relax_type_down", "l1-Gauss-Seidel"},
       {"-tetlap_amg_pc_hypre_boomeramg_relax_type_up", "backward-l1-Gauss-Seidel"},
@@ -85,6 +80,8 @@ static void set_options(void) {
       {"-tetlap_blocks_sub_pc_type", "icc"},
       {"-tetlap_blocks_sub_pc_factor_shift_type", "positive_definite"},
   };
+  for (int i = 0; i < FEM_PETSC_BOOMER_OPTIONS; i++)
+    PetscOptionsSetValue(NULL, fem_petsc_boomer_options[i][0], fem_petsc_boomer_options[i][1]);
   for (size_t i = 0; i < sizeof options / sizeof *options; i++)
     PetscOptionsSetValue(NULL, options[i][0], options[i][1]);
 }

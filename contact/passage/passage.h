@@ -14,22 +14,22 @@
 // the kept direction becomes h where |h| > ½, unless the element is turned, if either
 //
 //   h turns by less than a right angle: the element slides round a drum or over an edge, or turns with B;
-//   the element is near the surface, however far h turns, as over a sharp ridge: only an element that has
+//   the element is near the surface, however far h turns, as over a sharp ridge. Only an element that has
 //   been deep inside can come to the other side by passing through.
 //
 // Turned. h is opposed where its component along the kept direction is below −½. An element is turned once h
-// is opposed while the element is deep inside, or has been since h became opposed: it has gone beyond the
-// middle of B and is pushed out on the other side. It is no longer turned once that component is above ½. An
-// element that leaves B while it is turned has passed through.
+// is opposed while the element is deep inside, or has been since h became opposed. It has gone beyond the
+// middle of B then, and is pushed out on the other side. It is no longer turned once that component is above
+// ½. An element that leaves B while it is turned has passed through.
 //
 // Parts of B. Where B has several layers, or a slot, the element meets parts of B
 // (contact/passage/meetings.h) that press it from opposite sides, and their shares change. So h is that of
 // one part, and the element keeps one direction for each part. At the next accepted state a part is followed
 // by its cell, the one that the element met most of. It goes on in the part that has this cell, else in the
-// one whose cells have the most vertices in common with it, else, after a fast slide, in one that lies at
-// rest no farther from it than the margin of contact's lists, which bounds the step. Where two parts go on in
-// one, one entry stays: the one that is turned, else has a direction, else has been deep inside, else has the
-// direction that fits best.
+// one whose cells have the most vertices in common with it. After a fast slide there is neither: then it goes
+// on in one that lies at rest no farther from it than the margin of contact's lists, which bounds the step.
+// Where two parts go on in one, one entry stays: the one that is turned, else has a direction, else has been
+// deep inside, else has the direction that fits best.
 //
 // Deep inside. Two shares decide, so the unit of length does not matter:
 //

@@ -85,8 +85,10 @@ static double deepest_of(const Work *work, int tet) {
 
 // What is more than a sheet of one layer.
 static void find_thick(Work *work) {
-  for (int i = 0; i < work->def->tet_count; i++)
-    for (int v = 0; v < 4 && deepest_of(work, i) > 0; v++) work->is_thick[work->def->tets[i][v]] = true;
+  for (int i = 0; i < work->def->tet_count; i++) {
+    if (!(deepest_of(work, i) > 0)) continue;
+    for (int v = 0; v < 4; v++) work->is_thick[work->def->tets[i][v]] = true;
+  }
 }
 
 static bool is_split(const Work *work, int tet) {

@@ -96,8 +96,8 @@ Status fem_system_renew(FemSystem *system, const FemState *state);
 // After a failure the accepted state is the one before.
 Status fem_system_accept(FemSystem *system, const FemState *state, double next_step);
 
-// Until when a step from `time` may go, at most until `farthest` [s], so that it passes over no function of
-// time that the scene prescribes; `foresight` says how exactly these must be followed (signal.h).
+// Until when a step from `time` may go so that it passes over no function of time that the scene prescribes,
+// at most until `farthest` [s]. `foresight` says how exactly these must be followed (signal.h).
 double fem_system_horizon(const FemSystem *system, const FemForesight *foresight, double time,
                           double farthest);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Derivatives of a function g by friction (fem/effect/contact/stick.h) at one step, backwards. Given g's
-// derivatives by friction's forces and by the history that friction leaves for the next step, they are summed
-// by positions now and at the step before, by the history of the step before, and by the constants of the
-// law.
+// Derivatives of a function g by friction (fem/effect/contact/stick.h) at one step, backwards. Given are
+// g's derivatives by friction's forces and by the history that friction leaves for the next step. From them
+// follow those by positions now and at the step before, by the history of the step before, and by the
+// constants of the law, which are summed.
 #ifndef TETLAP_FEM_GRADIENT_FRICTION_H
 #define TETLAP_FEM_GRADIENT_FRICTION_H
 

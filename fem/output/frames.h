@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The frames of a run in its folder: frame_NNNNN.vtu (or .pvtu), what belongs to obstacles beside them, and
 // frames.pvd, which lists them. A frame is copied and written while the run goes on if there are threads, and
-// if frames are so far apart that the run need not wait for them; one at a time, in their order. It is listed
-// once it is on the disk.
+// if frames are so far apart that the run need not wait for them. Frames are written one at a time, in their
+// order. A frame is listed once it is on the disk.
 #ifndef TETLAP_FEM_OUTPUT_FRAMES_H
 #define TETLAP_FEM_OUTPUT_FRAMES_H
 

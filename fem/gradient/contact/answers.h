@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Derivatives of a function g by the answers of the overlap model, V and x̄ of each pair of meshes of an
-// evaluation, and from there by the weights of the network that gave them.
+// Derivatives of a function g by the answers of the overlap model: V and x̄ of each pair of meshes of an
+// evaluation. From there by the weights of the network that gave them.
 #ifndef TETLAP_FEM_GRADIENT_CONTACT_ANSWERS_H
 #define TETLAP_FEM_GRADIENT_CONTACT_ANSWERS_H
 

@@ -7,9 +7,9 @@
 #include "base/vec3.h"
 #include "fem/model/compliance/extent.h"
 
-// At most: the solid angle of a tip over that of a cube's corner, how far its edges lead across its axis over
-// how far along (√2 at a cube's corner, and more where it is sheared in a plane), its reach over the body's
-// height.
+// At most: the solid angle of a tip over that of a cube's corner; how far its edges lead across its axis over
+// how far along; its reach over the body's height. The second is √2 at a cube's corner, and more where that
+// is sheared in a plane.
 static const double NARROW = 0.9, ACROSS = 1.2, FINE = 0.5;
 
 // Of a vertex.
@@ -66,7 +66,7 @@ static bool may_meet(const FemModel *model, const FemModelBody *body, int vertex
   return body->is_obstacle || !(is_prescribed[0] || is_prescribed[1] || is_prescribed[2]);
 }
 
-static void look_at(const Corner *corner, double height, FemTip *tip) {
+static void keep_sharper(const Corner *corner, double height, FemTip *tip) {
   double cosine = 1 - corner->angle / (2 * M_PI), slope = cosine / sqrt(1 - cosine * cosine);
   if (!(corner->reach > 0) || corner->is_wide || corner->angle > NARROW * M_PI / 2 ||
       corner->reach > FINE * height)
@@ -88,7 +88,7 @@ Status fem_tip_find(const FemModel *model, int body, FemTip *tip) {
   for (int i = range->tet_begin; i < range->tet_end; i++)
     for (int v = 0; v < 4; v++) compare_edges(model, i, v, &corners[model->tets[i][v] - begin]);
   for (int v = 0; v < count; v++)
-    if (may_meet(model, range, begin + v)) look_at(&corners[v], extent.height, tip);
+    if (may_meet(model, range, begin + v)) keep_sharper(&corners[v], extent.height, tip);
   memory_free(corners);
   return STATUS_OK;
 }

@@ -8,9 +8,9 @@
 
 #include "fem/model/model.h"
 
-// Of a box its faces; of a cylinder a prism whose section has the circle's area, of a ball triangles with
-// corners on it, though contact computes with the round ones; of a half-space a square below the bodies at
-// rest, which moves along its normal only, so that it stays there.
+// Of a box its faces; of a cylinder a prism whose section has the circle's area; of a ball triangles with
+// corners on it. Contact computes with the round ones. Of a half-space a square below the bodies at rest; it
+// moves along its normal only, so it stays there.
 typedef struct FemObstacleSurface {
   int vertex_count;
   double *rest;                   // before any motion [m]                            (vertex_count, 3)

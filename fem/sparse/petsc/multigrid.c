@@ -32,21 +32,25 @@ static Status fail_in(const FemPetscMultigrid *multigrid, const char *what, Pets
 
 // ---- Room.
 
-// BoomerAMG as measured on contact, friction, statics and ν = 0.45: one level of aggressive coarsening, which
-// halves memory for a third more iterations. gamg with its own smoother.
-static Status set_options(const FemPetscMultigrid *multigrid) {
-  static const char *const options[][2] = {
-      {"-tetlap_amg_pc_hypre_type", "boomeramg"},
-      {"-tetlap_amg_pc_hypre_boomeramg_coarsen_type", "HMIS"},
-      {"-tetlap_amg_pc_hypre_boomeramg_interp_type", "ext+i"},
-      {"-tetlap_amg_pc_hypre_boomeramg_P_max", "4"},
-      {"-tetlap_amg_pc_hypre_boomeramg_strong_threshold", "0.5"},
-      {"-tetlap_amg_pc_hypre_boomeramg_agg_nl", "1"},
-      {"-tetlap_gamg_pc_gamg_reuse_interpolation", "true"},
-  };
-  for (size_t i = 0; i < sizeof options / sizeof *options; i++)
-    PETSC_TRY(options[i][0], multigrid->petsc->PetscOptionsSetValue(NULL, options[i][0], options[i][1]));
+const char *const fem_petsc_boomer_options[FEM_PETSC_BOOMER_OPTIONS][2] = {
+    {"-tetlap_amg_pc_hypre_type", "boomeramg"},
+    {"-tetlap_amg_pc_hypre_boomeramg_coarsen_type", "HMIS"},
+    {"-tetlap_amg_pc_hypre_boomeramg_interp_type", "ext+i"},
+    {"-tetlap_amg_pc_hypre_boomeramg_P_max", "4"},
+    {"-tetlap_amg_pc_hypre_boomeramg_strong_threshold", "0.5"},
+    {"-tetlap_amg_pc_hypre_boomeramg_agg_nl", "1"},
+};
+
+static Status set_option(const FemPetscMultigrid *multigrid, const char *name, const char *value) {
+  PETSC_TRY(name, multigrid->petsc->PetscOptionsSetValue(NULL, name, value));
   return STATUS_OK;
+}
+
+// GAMG has its own smoother.
+static Status set_options(const FemPetscMultigrid *multigrid) {
+  for (int i = 0; i < FEM_PETSC_BOOMER_OPTIONS; i++)
+    TRY(set_option(multigrid, fem_petsc_boomer_options[i][0], fem_petsc_boomer_options[i][1]));
+  return set_option(multigrid, "-tetlap_gamg_pc_gamg_reuse_interpolation", "true");
 }
 
 Status fem_petsc_multigrid_open(FemPetscMultigrid *multigrid, FemPetscKind kind) {

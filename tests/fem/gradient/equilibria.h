@@ -3,14 +3,8 @@
 #ifndef TETLAP_TESTS_EQUILIBRIA_H
 #define TETLAP_TESTS_EQUILIBRIA_H
 
-#include "app/gradient/goal.h"
-#include "app/gradient/parameter.h"
-#include "app/gradient/run.h"
-#include "fem/gradient/gradient.h"
+#include "answer.h"
 #include "folder.h"
-#include "static_solve.h"
-
-enum { MOST = 16 };
 
 // What is asked of a scene.
 typedef struct Asked {
@@ -21,17 +15,6 @@ typedef struct Asked {
   bool follows, by_weights;
 } Asked;
 
-typedef struct Answer {
-  int goal_count, parameter_count;
-  FemGoal goals[MOST];
-  FemParameter parameters[MOST];
-  double values[MOST]; // of the parameters
-  const char *idle[MOST];
-  FemGradientDef def;
-  FemGradient gradient;
-  bool is_done;
-} Answer;
-
 static inline Status at_end(void *observer, const FemRunProgress *progress) {
   Answer *answer = observer;
   bool is_due = false;
@@ -40,11 +23,6 @@ static inline Status at_end(void *observer, const FemRunProgress *progress) {
   if (!is_due || progress->time <= answer->gradient.time) return STATUS_OK;
   answer->is_done = true;
   return fem_gradient_find(&answer->gradient, progress->system, &answer->def);
-}
-
-static inline void destroy(Answer *answer) {
-  fem_gradient_destroy(&answer->gradient);
-  for (int g = 0; g < answer->goal_count; g++) app_gradient_destroy_goal(&answer->goals[g]);
 }
 
 static inline Status read_words(const Asked *asked, const FemModel *model, Answer *answer) {

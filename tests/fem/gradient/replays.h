@@ -3,15 +3,10 @@
 #ifndef TETLAP_TESTS_REPLAYS_H
 #define TETLAP_TESTS_REPLAYS_H
 
-#include "app/gradient/goal.h"
-#include "app/gradient/parameter.h"
-#include "app/gradient/run.h"
+#include "answer.h"
 #include "fem/gradient/path/check.h"
 #include "fem/gradient/path/path.h"
 #include "fem/gradient/path/replay.h"
-#include "static_solve.h"
-
-enum { MOST = 16 };
 
 typedef struct Asked {
   const char *scene, *setting;
@@ -23,19 +18,6 @@ typedef struct Asked {
   int least_steps;          // of the run; 0: 20
   long long least_switches; // between sticking and slipping
 } Asked;
-
-typedef struct Answer {
-  int goal_count, parameter_count;
-  FemGoal goals[MOST];
-  FemParameter parameters[MOST];
-  double values[MOST]; // of the parameters
-  FemGradient gradient;
-} Answer;
-
-static inline void destroy(Answer *answer) {
-  fem_gradient_destroy(&answer->gradient);
-  for (int g = 0; g < answer->goal_count; g++) app_gradient_destroy_goal(&answer->goals[g]);
-}
 
 static inline Status record(void *observer, const FemRunProgress *progress) {
   FemReplaySteps *steps = observer;

@@ -159,15 +159,20 @@ static void write_ring(const char *path, double thick, double wide) {
   fem_mesh_destroy(&mesh);
 }
 
+// Opens tests/scenes/ring.yaml with such a ring.
+static void open_ring(SceneRun *run, double thick, double wide) {
+  char path[128], mesh[160];
+  snprintf(path, sizeof path, "%s/ring.mesh", folder);
+  snprintf(mesh, sizeof mesh, "bodies.ring.mesh={file: %s}", path);
+  write_ring(path, thick, wide);
+  scene_open(run, "ring", (const char *const[]){mesh, NULL});
+}
+
 // What is hollow is crushed as a plate of its wall is: the height of the whole says nothing of that.
 START_TEST(a_spike_does_not_pass_the_wall_of_a_ring) {
   SceneRun run;
   FemExtent extent;
-  char path[128], mesh[160];
-  snprintf(path, sizeof path, "%s/ring.mesh", folder);
-  snprintf(mesh, sizeof mesh, "bodies.ring.mesh={file: %s}", path);
-  write_ring(path, THICK, 0.05);
-  scene_open(&run, "ring", (const char *const[]){mesh, NULL});
+  open_ring(&run, THICK, 0.05);
   double stored = 0, thick = THICK * cos(0.98 * M_PI / ROUND); // between facets
   for (int b = 0; b < 2; b++)
     stored += fem_model_parts_volume(&run.model, b) / run.model.parts[b].material.young;
@@ -186,11 +191,7 @@ END_TEST
 static double wall_of(double thick, FemExtent *extent) {
   SceneRun run;
   FemThickness found;
-  char path[128], mesh[160];
-  snprintf(path, sizeof path, "%s/ring.mesh", folder);
-  snprintf(mesh, sizeof mesh, "bodies.ring.mesh={file: %s}", path);
-  write_ring(path, thick, 0.2);
-  scene_open(&run, "ring", (const char *const[]){mesh, NULL});
+  open_ring(&run, thick, 0.2);
   ck_assert_ok(fem_extent_measure(&run.model, 0, extent));
   ck_assert_ok(fem_thickness_find(&run.model, 0, &found));
   ck_assert(found.is_slender == (found.wall < extent->length / 5));
