@@ -69,10 +69,11 @@ static Status find_program(char path[PATH_MAX]) {
   char *slash = strrchr(path, '/');
   snprintf(slash ? slash + 1 : path, 16, "tetlap-mpi");
   if (file_exists(path)) return STATUS_OK;
-  return status_fail(STATUS_USAGE,
-                     "--ranks needs the program tetlap-mpi, and %s is not there: it is built from source "
-                     "where MPI, PETSc and METIS (libmetis-dev) are found",
-                     path);
+  return status_fail(
+      STATUS_USAGE,
+      "--ranks needs the program tetlap-mpi, and %s is not there: `cmake --build "
+      "build/release` makes it from source where MPI, PETSc and METIS (libmetis-dev) are found",
+      path);
 }
 
 // Replaces this process by `first` (count), ended by the arguments that it was started with itself.

@@ -44,7 +44,7 @@ static void print_work(const FemAudit *audit, bool has_fallen) {
 }
 
 // What was lost, apart into what was asked for and the integrator's own.
-static void print_energy(const FemAudit *audit, const FemAuditBounds *bounds) {
+static void print_energy(const FemAudit *audit, const FemAuditBounds *bounds, bool has_risen) {
   double lost = fem_audit_lost(audit);
   const bool is_bound = lost > 0 && audit->uncertain > 0.1 * lost;
   print_line("energy:", "%.3g J in the scene (the largest of its parts)", audit->scale);
@@ -53,6 +53,8 @@ static void print_energy(const FemAudit *audit, const FemAuditBounds *bounds) {
              lost < 0 ? "gained" : "lost", is_bound ? ", at most" : "");
   print_line("", "%.2g %% is the largest rise of the total, %.2g %% is allowed",
              100 * audit->gain / audit->scale, 100 * bounds->run);
+  if (has_risen && audit->gain <= bounds->run * audit->scale)
+    print_line("", "while there was less energy in the scene, a rise was a larger share: see trouble");
 }
 
 // Who answered the pairs, where a network took part.
@@ -85,11 +87,14 @@ void app_closing_print(const AppJob *job, const FemRunResult *result) {
     print_line("", "contact is with obstacles without elements only: its forces use no overlap model");
   for (int i = 0; i < result->account.contact_count; i++)
     print_block("contact:", result->account.contacts[i]);
+  if (job->scene.contact.is_on && !(result->contact.force_max > 0))
+    print_line("contact:", "nothing has touched");
   print_network(&result->contact.pairs);
   if (result->is_static)
     print_work(&result->energy.audit, result->equilibrium.relaxation_steps > 0);
   else
-    print_energy(&result->energy.audit, &result->energy.bounds);
+    print_energy(&result->energy.audit, &result->energy.bounds,
+                 result->trouble.of[FEM_TROUBLE_ENERGY].steps > 0);
   fem_run_describe_statistics(result, text, sizeof text);
   print_block("statistics:", text);
   print_files(job);

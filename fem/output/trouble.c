@@ -23,7 +23,9 @@ static const struct {
      "start"},
     {"wrong_way", "contact pushing the wrong way", "vertex",
      "a body is pierced there: try a larger contact.stiffness, or a shorter time.max_step"},
-    {"energy", "energy out of nothing", NULL, "try a smaller time.tolerance, or a smaller contact.stiffness"},
+    {"energy", "energy out of nothing", NULL,
+     "try a smaller time.tolerance, or a smaller contact.stiffness; a learned contact.overlap gives some by "
+     "itself, which a run with clip shows"},
     {"passed", "bodies passed through each other", "element",
      "try a larger contact.stiffness, a shorter time.max_step, or a thicker or finer body"},
 };

@@ -36,7 +36,7 @@ static Status watch_trouble(FemRunState *run, FemMeasures *measures, bool *has_b
   if (!run->options->is_strict || !measures->trouble.count[FEM_TROUBLE_ENERGY]) return STATUS_OK;
   return status_fail(
       STATUS_SOLVER,
-      "at t = %.9g s: the energy has risen by %.2g of the scene's, the bound is %g (--strict). Try "
+      "at t = %.9g s: the energy has risen by %.3g of the scene's so far, the bound is %g (--strict). Try "
       "a smaller time.tolerance or time.max_step, or a smaller contact.stiffness",
       run->time, rise, bound);
 }

@@ -79,8 +79,8 @@ static void warn(Observer *observer, const FemRunProgress *progress) {
     char text[512];
     if (trouble->of[k].events == observer->told.of[k].events) continue;
     if (k == FEM_TROUBLE_ENERGY && trouble->of[k].events > observer->told.of[k].events)
-      log_warning("t = %.6g s: the energy has risen by %.2g of the scene's, the bound is %g", progress->time,
-                  progress->energy_rise, progress->energy_bound);
+      log_warning("t = %.6g s: the energy has risen by %.3g of the scene's so far, the bound is %g",
+                  progress->time, progress->energy_rise, progress->energy_bound);
     else if (observer->told.of[k].events == 0) {
       fem_trouble_describe(trouble, progress->system->model, (FemTroubleKind)k, text, sizeof text);
       log_warning("%s", text);
