@@ -125,7 +125,7 @@ START_TEST(threads_compares_runs_of_one_scene_by_threads) {
   memory_free(said);
   ck_assert_int_eq(rows, 2);
   char *picture = folder_read("threads.svg");
-  ck_assert_ptr_nonnull(strstr(picture, "free_fall@output.frames=2, 3</text>"));
+  ck_assert_ptr_nonnull(strstr(picture, "free_fall, 3</text>"));
   ck_assert_ptr_nonnull(strstr(picture, "</svg>"));
   memory_free(picture);
 }
