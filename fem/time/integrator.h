@@ -2,7 +2,7 @@
 // Time: SUNDIALS IDA on y = [u; v], F = [u̇ − v; M v̇ − f(u, v, t)], BDF of order ≤ 2, rtol = 0.
 //
 // A custom direct linear solver condenses each Newton system to S du = r₂ + (c M + D) r₁, dv = c du − r₁ with
-// S = K + c D + c² M (ida_solver.h). Frames are interpolated, never stopped at. A step ends at the end and,
+// S = K + c D + c² M (ida/solver.h). Frames are interpolated, never stopped at. A step ends at the end and,
 // where what is prescribed could not be followed otherwise, just before a knot of it (signal.h).
 //
 //   create ─► restart (first state) ─► step ─► at … ─► (accept) ─► step ─► …

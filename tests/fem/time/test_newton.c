@@ -5,7 +5,7 @@
 
 #include "fem/model/limits.h"
 #include "fem/time/newton/direct.h"
-#include "fem/time/newton/ida_solver.h"
+#include "fem/time/ida/solver.h"
 #include "fem/time/newton/newton.h"
 #include "fem/time/nvector.h"
 #include "fem/time/sundials.h"

@@ -13,14 +13,14 @@
 // size and order.
 //
 // Not matrix-embedded: IDA would then factorise in every Newton iteration.
-#ifndef TETLAP_FEM_TIME_NEWTON_IDA_SOLVER_H
-#define TETLAP_FEM_TIME_NEWTON_IDA_SOLVER_H
+#ifndef TETLAP_FEM_TIME_IDA_SOLVER_H
+#define TETLAP_FEM_TIME_IDA_SOLVER_H
 
 #include <sundials/sundials_linearsolver.h>
 
 #include "fem/effect/system.h"
 #include "fem/sparse/solver.h"
-#include "fem/time/newton/ida_failure.h"
+#include "fem/time/ida/failure.h"
 #include "fem/time/part.h"
 
 typedef struct FemIdaSolver FemIdaSolver; // opaque

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Failures on their way through IDA: a Status into the integer that a callback answers, and IDA's flag for a
 // step that failed into a reason and the unknown where it is worst.
-#ifndef TETLAP_FEM_TIME_NEWTON_IDA_FAILURE_H
-#define TETLAP_FEM_TIME_NEWTON_IDA_FAILURE_H
+#ifndef TETLAP_FEM_TIME_IDA_FAILURE_H
+#define TETLAP_FEM_TIME_IDA_FAILURE_H
 
 #include <sundials/sundials_nvector.h>
 

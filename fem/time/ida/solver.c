@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/time/newton/ida_solver.h"
+#include "fem/time/ida/solver.h"
 
 #include <ida/ida.h>
 #include <math.h>

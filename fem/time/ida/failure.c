@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/time/newton/ida_failure.h"
+#include "fem/time/ida/failure.h"
 
 #include <ida/ida.h>
 #include <stdio.h>
