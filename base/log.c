@@ -65,10 +65,6 @@ void log_debug(const char *format, ...) {
   va_end(args);
 }
 
-bool log_has_terminal(void) {
-  return isatty(STDERR_FILENO);
-}
-
 // As many columns as the terminal has now, less one; characters of several bytes are not torn.
 static void cut_to_terminal(char *text) {
   struct winsize window;
@@ -105,7 +101,7 @@ bool log_pace_is_due(LogPace *pace, double share) {
   bool is_due = tenth > pace->tenth || (pace->due_s > 0 && now >= pace->due_s);
   if (is_due || !(pace->due_s > 0)) pace->due_s = now + LONGEST_SILENCE_S;
   pace->tenth = tenth;
-  return is_due && share < 1 && !log_has_terminal();
+  return is_due && share < 1 && !isatty(STDERR_FILENO);
 }
 
 void log_progress_end(void) {

@@ -23,8 +23,6 @@ void log_debug(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 // One line that is overwritten in place, on a terminal only and at most ten times a second.
 void log_progress(const char *format, ...) __attribute__((format(printf, 1, 2)));
-// Whether the progress line is seen: standard error is a terminal.
-bool log_has_terminal(void);
 // Where standard error is no terminal, progress is lines: one is due at each tenth of the way, and a minute
 // after the last. None is due on a terminal or at the end (`share` 1), which the caller reports anyway.
 typedef struct LogPace {

@@ -40,11 +40,6 @@ double random_between(Random *random, double low, double high) {
   return low + (high - low) * random_uniform(random);
 }
 
-double random_normal(Random *random) {
-  double u = 1 - random_uniform(random), v = random_uniform(random); // u in (0, 1]
-  return sqrt(-2 * log(u)) * cos(6.283185307179586 * v);
-}
-
 int random_below(Random *random, int count) {
   return (int)(random_uniform(random) * count);
 }

@@ -14,7 +14,6 @@ Random random_seeded(uint64_t seed, uint64_t stream);
 uint64_t random_bits(Random *random);
 double random_uniform(Random *random);                          // [0, 1), 53 bits
 double random_between(Random *random, double low, double high); // [low, high)
-double random_normal(Random *random);                           // mean 0, variance 1
 int random_below(Random *random, int count);                    // 0 … count − 1
 void random_direction(Random *random, double direction[3]);     // uniform on the unit sphere
 void random_rotation(Random *random, double rotation[9]);       // uniform in SO(3), row-major

@@ -22,7 +22,7 @@
 #include "fem/sparse/vector.h"
 #include "fem/sparse/wear.h"
 
-typedef enum Kind { BOOMER, GAMG, MUMPS, BLOCKS, KIND_COUNT } Kind;
+typedef enum Kind { BOOMER, GAMG, MUMPS, BLOCKS } Kind;
 static const char *const names[] = {"amg", "gamg", "mumps", "block_jacobi"};
 static const char *const prefixes[] = {"tetlap_amg_", "tetlap_gamg_", "tetlap_mumps_", "tetlap_blocks_"};
 

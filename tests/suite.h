@@ -13,6 +13,7 @@
 #include <string.h>
 #include <sys/resource.h>
 
+#include "base/random.h"
 #include "base/status.h"
 
 #define ck_assert_ok(call)                                                                                   \
@@ -46,6 +47,12 @@ static inline bool suite_leaves_out(const char *model) {
   if (!without || strcmp(without, model) != 0) return false;
   suite_skip("%s: TETLAP_WITHOUT", model);
   return true;
+}
+
+// A random number of mean 0 and variance 1 (Box and Muller 1958).
+static inline double suite_normal(Random *random) {
+  double u = 1 - random_uniform(random), v = random_uniform(random); // u in (0, 1]
+  return sqrt(-2 * log(u)) * cos(6.283185307179586 * v);
 }
 
 // The larger one; NaN stays, which fmax would drop.

@@ -83,7 +83,8 @@ static const Key scene_keys[] = {
     {"effects.damping", FEM_PARAMETER_DAMPING, -1, -1, -1},
 };
 
-const char app_gradient_keys[] =
+// Keys by which there are derivatives, for messages.
+static const char keys_with_derivatives[] =
     "bodies.NAME.material.{young, poisson, density, mooney, ogden.exponents[K], ogden.shares[K], "
     "fibre.modulus, fibre.direction[K], damping, viscosity, bulk_viscosity}, bodies.NAME.materials[N].{…} "
     "the same; "
@@ -181,7 +182,8 @@ static bool is_of_law(const FemModel *model, const char *key, const FemParameter
 }
 
 static Status fail_key(void) {
-  return status_fail(STATUS_INPUT, "no derivative by it; there are, with K 0 to 2, %s", app_gradient_keys);
+  return status_fail(STATUS_INPUT, "no derivative by it; there are, with K 0 to 2, %s",
+                     keys_with_derivatives);
 }
 
 // The number of NAME in "bodies.NAME.…"; `rest` is what follows the name, which ends at the first dot.

@@ -5,9 +5,6 @@
 
 #include "fem/gradient/parameter.h"
 
-// Keys by which there are derivatives, for messages.
-extern const char app_gradient_keys[];
-
 // STATUS_INPUT: no such key, it names what is not there, or no derivative by it is known; the message begins
 // with the key and says what there is.
 Status app_gradient_read_parameter(const FemModel *model, const char *key, FemParameter *parameter);

@@ -11,24 +11,25 @@
 
 enum { MAX_WORDS = 5, WORD_SIZE = 128 };
 
-const char app_gradient_quantities[] = "displacement:BODY:AXIS, "
-                                       "probe:NAME:AXIS, "
-                                       "position:BODY:VERTEX:AXIS, "
-                                       "force:BODY:AXIS, "
-                                       "force:BODY:OTHER:AXIS, "
-                                       "patch:PROBE:AXIS, "
-                                       "pressure:PROBE, peak:PROBE, "
-                                       "moment:BODY:AXIS, "
-                                       "moment:BODY:OTHER:AXIS, "
-                                       "reaction:BODY:fixed[N]:AXIS, "
-                                       "reaction:BODY:driven[N]:AXIS, "
-                                       "energy, energy:elastic, energy:contact, energy:gravity, "
-                                       "sum:FILE, "
-                                       "misfit:FILE";
+// The words that there are, for messages; sums of files (goal.h) among them.
+static const char quantities[] = "displacement:BODY:AXIS, "
+                                 "probe:NAME:AXIS, "
+                                 "position:BODY:VERTEX:AXIS, "
+                                 "force:BODY:AXIS, "
+                                 "force:BODY:OTHER:AXIS, "
+                                 "patch:PROBE:AXIS, "
+                                 "pressure:PROBE, peak:PROBE, "
+                                 "moment:BODY:AXIS, "
+                                 "moment:BODY:OTHER:AXIS, "
+                                 "reaction:BODY:fixed[N]:AXIS, "
+                                 "reaction:BODY:driven[N]:AXIS, "
+                                 "energy, energy:elastic, energy:contact, energy:gravity, "
+                                 "sum:FILE, "
+                                 "misfit:FILE";
 
 static Status fail_quantity(const char *text) {
   return status_fail(STATUS_INPUT, "'%s' is none of the quantities %s, with AXIS x, y or z", text,
-                     app_gradient_quantities);
+                     quantities);
 }
 
 // Cuts at colons; more than MAX_WORDS: one more.

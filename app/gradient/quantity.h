@@ -5,9 +5,6 @@
 
 #include "fem/gradient/quantity.h"
 
-// The words that there are, for messages; sums of files (app/gradient/goal.h) among them.
-extern const char app_gradient_quantities[];
-
 // STATUS_INPUT: no such quantity, or a body, obstacle, probe or entry that is not there; the message lists
 // those that are.
 Status app_gradient_read_quantity(const FemModel *model, const char *text, FemQuantity *quantity);

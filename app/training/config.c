@@ -200,7 +200,7 @@ static const SceneKey root_keys[] = {
     {0},
 };
 // clang-format on
-const SceneSection app_training_keys = {
+static const SceneSection training_keys = {
     .help = "a training", .size = sizeof(AppTrainingConfig), .keys = root_keys, .finish = finish_root};
 
 static void destroy_sources(AppTrainingSourceDef *sources, int count) {
@@ -221,7 +221,7 @@ void app_training_config_destroy(AppTrainingConfig *config) {
 
 static Status read_all(const char *path, const char *const *overrides, int override_count,
                        AppTrainingConfig *config) {
-  TRY(app_scene_read_section(path, overrides, override_count, &app_training_keys, config));
+  TRY(app_scene_read_section(path, overrides, override_count, &training_keys, config));
   config->path = memory_copy(path, strlen(path) + 1, 1);
   if (!config->path) return status_no_memory("the configuration");
   size_t size;

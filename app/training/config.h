@@ -88,8 +88,6 @@ typedef struct AppTrainingConfig {
   char *path;      // owned
 } AppTrainingConfig;
 
-extern const SceneSection app_training_keys;
-
 // Reads and checks. On failure nothing is left. STATUS_INPUT: file:line:column and what is wrong.
 Status app_training_config_read(const char *path, const char *const *overrides, int override_count,
                                 AppTrainingConfig *config);

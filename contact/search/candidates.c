@@ -70,9 +70,19 @@ Status contact_candidates_create(ContactCandidates *candidates, const ContactLay
   return fits ? STATUS_OK : status_no_memory("the candidate lists");
 }
 
+static void drop_kept(ContactCandidates *candidates) {
+  ContactKeptCandidates *kept = &candidates->kept;
+  destroy_list(&kept->list);
+  memory_free(kept->positions);
+  memory_free(kept->shapes);
+  memory_free(kept->expected);
+  memory_free(kept->is_left_out);
+  *kept = (ContactKeptCandidates){0};
+}
+
 void contact_candidates_destroy(ContactCandidates *candidates) {
   destroy_list(&candidates->list);
-  contact_candidates_drop(candidates);
+  drop_kept(candidates);
   for (int f = 0; candidates->found && f < candidates->found_count; f++)
     contact_broad_destroy(&candidates->found[f].pairs);
   memory_free(candidates->found);
@@ -342,7 +352,7 @@ void contact_candidates_leave_out(ContactCandidates *candidates, const ContactLa
 Status contact_candidates_keep(ContactCandidates *candidates, const ContactLayout *layout) {
   const ContactCandidateList *list = &candidates->list;
   ContactKeptCandidates *kept = &candidates->kept;
-  contact_candidates_drop(candidates);
+  drop_kept(candidates);
   if (!candidates->is_fresh) return STATUS_OK;
   TRY(create_list(&kept->list, layout));
   kept->positions =
@@ -353,23 +363,13 @@ Status contact_candidates_keep(ContactCandidates *candidates, const ContactLayou
       memory_copy(candidates->is_left_out, (size_t)layout->interface_count, sizeof *kept->is_left_out);
   if (!kept->positions || !kept->expected || !kept->is_left_out || !kept->shapes ||
       copy_list(list, layout, &kept->list)) {
-    contact_candidates_drop(candidates);
+    drop_kept(candidates);
     return status_no_memory("the candidate lists");
   }
   for (int s = 0; s < layout->def.shape_count; s++)
     kept->shapes[s] = contact_shape_stand(&layout->def.shapes[s], candidates->reference_time);
   kept->time = candidates->reference_time;
   return STATUS_OK;
-}
-
-void contact_candidates_drop(ContactCandidates *candidates) {
-  ContactKeptCandidates *kept = &candidates->kept;
-  destroy_list(&kept->list);
-  memory_free(kept->positions);
-  memory_free(kept->shapes);
-  memory_free(kept->expected);
-  memory_free(kept->is_left_out);
-  *kept = (ContactKeptCandidates){0};
 }
 
 static bool shapes_stand(const ContactKeptCandidates *kept, const ContactLayout *layout, double time) {

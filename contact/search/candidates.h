@@ -74,7 +74,6 @@ void contact_candidates_leave_out(ContactCandidates *candidates, const ContactLa
 // Keeps the list, if the last update made it, until the next call: a list that is made anew where a search
 // would find the same is a copy.
 Status contact_candidates_keep(ContactCandidates *candidates, const ContactLayout *layout);
-void contact_candidates_drop(ContactCandidates *candidates); // what is kept
 
 // Whether the list still holds every overlapping pair; NaN: false.
 bool contact_candidates_cover(ContactCandidates *candidates, const ContactLayout *layout, double time,

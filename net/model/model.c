@@ -12,10 +12,6 @@
 
 #include "net/model/model.inc"
 
-void net_model_narrow(const NetModel_f64 *from, NetModel_f32 *to) {
-  for (size_t k = 0; k < from->plan->parameter_count; k++) to->parameters[k] = (float)from->parameters[k];
-}
-
 void net_model_widen(const NetModel_f32 *from, NetModel_f64 *to) {
   for (size_t k = 0; k < from->plan->parameter_count; k++) to->parameters[k] = from->parameters[k];
 }

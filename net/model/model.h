@@ -17,7 +17,6 @@
 #include "net/model/model_template.h"
 
 // The same parameters in the other precision; the shapes must be equal.
-void net_model_narrow(const NetModel_f64 *from, NetModel_f32 *to);
 void net_model_widen(const NetModel_f32 *from, NetModel_f64 *to);
 
 #endif

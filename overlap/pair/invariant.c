@@ -64,7 +64,3 @@ double overlap_invariant_allowed(const double x[24], double reference) {
   double smaller = overlap_invariant_smaller_volume(x);
   return reference > 1e-6 * smaller ? 1e-9 * reference : 1e-12 * smaller;
 }
-
-double overlap_invariant_misfit(const double x[24], double volume, double reference) {
-  return volume == reference ? 0 : fabs(volume - reference) / overlap_invariant_allowed(x, reference);
-}

@@ -28,7 +28,4 @@ double overlap_invariant_scaling(const double x[24], double volume, const double
 // else 1e-12 of the smaller volume.
 double overlap_invariant_allowed(const double x[24], double reference);
 
-// |V − reference| over what is allowed: ≤ 1 is right.
-double overlap_invariant_misfit(const double x[24], double volume, double reference);
-
 #endif

@@ -7,8 +7,10 @@
 
 #include "overlap/pair/simplex.h"
 
-const double overlap_range_tail = 0.005;
-const double overlap_range_band = 1.5;
+// The share of pairs at each end of each measure that a range leaves out.
+static const double TAIL = 0.005;
+// The factor by which a measure is beyond the range where the weight is 0.
+static const double BAND = 1.5;
 
 static Vec3 centroid_of(const double pair[24]) {
   Vec3 sum = {0, 0, 0};
@@ -40,7 +42,7 @@ static int compare(const void *a, const void *b) {
 
 static void find_ends(int count, double *values, double ends[2]) {
   qsort(values, (size_t)count, sizeof *values, compare);
-  int skipped = (int)(overlap_range_tail * count);
+  int skipped = (int)(TAIL * count);
   ends[0] = values[skipped];
   ends[1] = values[count - 1 - skipped];
 }
@@ -90,7 +92,7 @@ static const double WITHIN = 1e-6;
 
 // The weight of a measure between two ends, with its derivatives by the measure's logarithm.
 static OverlapBend weigh(double value, const double ends[2]) {
-  double rate = 1 / log(overlap_range_band);
+  double rate = 1 / log(BAND);
   OverlapBend below = overlap_bend_rise(1 - (log(ends[0] / value) - WITHIN) * rate, rate),
               above = overlap_bend_rise(1 - (log(value / ends[1]) - WITHIN) * rate, -rate);
   return (OverlapBend){below.value * above.value, below.value * above.slope + below.slope * above.value,
@@ -185,6 +187,6 @@ double overlap_range_weight(const OverlapRange *range, const double pair[24], do
 }
 
 OverlapBend overlap_range_overlap_weight(const OverlapRange *range, double overlap) {
-  double width = range->overlap * (overlap_range_band - 1);
+  double width = range->overlap * (BAND - 1);
   return overlap_bend_rise(1 - (overlap - range->overlap) / width, -1 / width);
 }

@@ -33,9 +33,6 @@ typedef struct OverlapRangeMeasures {
 
 OverlapRangeMeasures overlap_range_measure(const double pair[24]);
 
-// The share of pairs at each end of each measure that a range leaves out.
-extern const double overlap_range_tail;
-
 // The range of `count` > 0 pairs by their measures, and of their overlaps where these are > 0. Sorts `values`
 // (count), which is scratch memory.
 OverlapRange overlap_range_of(int count, const OverlapRangeMeasures *measures, const double *overlaps,
@@ -45,14 +42,12 @@ OverlapRange overlap_range_of(int count, const OverlapRangeMeasures *measures, c
 void overlap_range_print(const OverlapRange *range, char text[OVERLAP_RANGE_TEXT]);
 bool overlap_range_parse(const char *text, OverlapRange *range);
 
-// 1 within the range, 0 beyond by the factor overlap_range_band in any measure, continuously
+// 1 within the range, 0 beyond by the factor 1.5 in any measure, continuously
 // differentiable in between; NaN: 0. `gradient` and `hessian` (24, 24) are by the normalised pair; the second
 // or both may be NULL.
 double overlap_range_weight(const OverlapRange *range, const double pair[24], double *gradient,
                             double *hessian);
 // The same of the overlap V' ≥ 0 alone, with its derivatives by it.
 OverlapBend overlap_range_overlap_weight(const OverlapRange *range, double overlap);
-
-extern const double overlap_range_band;
 
 #endif

@@ -104,7 +104,7 @@ enum { MANY = 700 };
 // Of all sizes; every third where another one is, and every fifth a point.
 static void draw_boxes(Random *random, double boxes[MANY][6]) {
   for (int k = 0; k < MANY; k++) {
-    double size = k % 5 == 0 ? 0 : 0.05 * exp(random_normal(random));
+    double size = k % 5 == 0 ? 0 : 0.05 * exp(suite_normal(random));
     for (int c = 0; c < 3; c++) {
       boxes[k][c] = k % 3 == 0 && k > 0 ? boxes[k / 2][c] : random_uniform(random);
       boxes[k][c + 3] = boxes[k][c] + size;

@@ -148,7 +148,7 @@ START_TEST(the_gradient_is_that_of_the_volume) {
     unsigned flags;
     const double h = 1e-6;
     for (int c = 0; c < 24; c++) {
-      step[c] = random_normal(&random);
+      step[c] = suite_normal(&random);
       slope += step[c] * gradients[24 * i + c];
       size += fabs(step[c] * gradients[24 * i + c]);
     }

@@ -81,6 +81,14 @@ static inline NetModel_f64 net_suite_model(const NetShape *shape, uint64_t seed)
   return model;
 }
 
+// The same parameters in single precision.
+static inline NetModel_f32 net_suite_narrow(const NetModel_f64 *from) {
+  NetModel_f32 model;
+  ck_net_ok(net_model_create_f32(&from->plan->shape, &model));
+  for (size_t k = 0; k < from->plan->parameter_count; k++) model.parameters[k] = (float)from->parameters[k];
+  return model;
+}
+
 static inline NetWork_f64 net_suite_work(const NetModel_f64 *model, int threads, int tangents, int batch) {
   NetWork_f64 work;
   NetWorkDef def = net_work_default();

@@ -38,11 +38,9 @@ static const NetCard card = {.normalisation = "none", .range = "random", .proven
 // Outputs and input gradients in float.
 static void make_single(const char *name, const NetShape *shape) {
   NetModel_f64 wide = net_suite_model(shape, 40);
-  NetModel_f32 model;
+  NetModel_f32 model = net_suite_narrow(&wide);
   NetWork_f32 work;
   NetWorkDef def = net_work_default();
-  ck_net_ok(net_model_create_f32(shape, &model));
-  net_model_narrow(&wide, &model);
   ck_net_ok(net_work_create_f32(model.plan, &def, &work));
   ck_net_ok(net_weights_write_f32(place(name, "weights"), &model, &card));
   NetRandom random = net_random_seeded(41, 0);

@@ -23,7 +23,7 @@ static const char *const names[] = {"geo",         "geo-small",          "hybrid
 static void draw(Random *random, double pair[SIZE]) {
   for (int t = 0; t < 2; t++) {
     double centre[3];
-    for (int c = 0; c < 3; c++) centre[c] = 0.25 * random_normal(random);
+    for (int c = 0; c < 3; c++) centre[c] = 0.25 * suite_normal(random);
     do
       for (int i = 0; i < SIZE / 2; i++)
         pair[SIZE / 2 * t + i] = centre[i % 3] + 2 * random_uniform(random) - 1;
@@ -175,12 +175,12 @@ START_TEST(slopes_by_weights_agree_with_differences) {
       &model, &(OverlapBatch){.pair_count = TRAINED, .pairs = pairs, .volume = volumes, .flags = flags}));
   for (int i = 0; i < TRAINED; i++) blended += volumes[i] > 0 && (flags[i] & OVERLAP_BLENDED) != 0;
   ck_assert_int_gt(blended, 0);
-  for (int i = 0; i < 4 * TRAINED; i++) by[i] = random_normal(&random);
+  for (int i = 0; i < 4 * TRAINED; i++) by[i] = suite_normal(&random);
   training->read(model.self, own);
   ck_assert_ok(training->pull(model.self, TRAINED, pairs, by, slope));
   for (int n = 0; n < 3; n++) {
     double along = 0, found = 0, size = 0;
-    for (size_t i = 0; i < count; i++) way[i] = own[i] * random_normal(&random);
+    for (size_t i = 0; i < count; i++) way[i] = own[i] * suite_normal(&random);
     for (size_t i = 0; i < count; i++) along += slope[i] * way[i], size += fabs(slope[i] * way[i]);
     for (int p = 0; p < 4; p++) {
       for (size_t i = 0; i < count; i++) moved[i] = own[i] + places[p] * STEP * way[i];

@@ -279,17 +279,18 @@ static void summarise_status(const ContactStatusCounts *pairs, Record *record) {
   record_integer(record, "false_negative", pairs->false_negatives);
 }
 
-const char *const fem_run_spread_names[] = {
+// In the order of fem/run/result/spread.c.
+static const char *const spread_names[] = {
     "vertices",  "elements",   "matrix_entries", "peak_rss_bytes",  "cpu_s",     "work_s",
     "waiting_s", "calls",      "bytes_given",    "broad_phase_s",   "overlap_s", "contact_s",
     "forces_s",  "assembly_s", "analysis_s",     "factorisation_s", "solve_s",   "output_s",
 };
-static_assert(sizeof fem_run_spread_names == FEM_RUN_SPREAD_COUNT * sizeof *fem_run_spread_names, "one each");
+static_assert(sizeof spread_names == FEM_RUN_SPREAD_COUNT * sizeof *spread_names, "one each");
 
 static void summarise_ranks(const FemRunSpread *spread, Record *record) {
   record_integer(record, "count", spread->rank_count);
   for (int k = 0; k < FEM_RUN_SPREAD_COUNT; k++) {
-    Record *row = record_child(record, fem_run_spread_names[k]);
+    Record *row = record_child(record, spread_names[k]);
     record_number(row, "least", spread->least[k]);
     record_number(row, "mean", spread->mean[k]);
     record_number(row, "most", spread->most[k]);

@@ -154,9 +154,6 @@ void fem_run_describe_trouble(const FemRunResult *result, const FemModel *model,
 // Extremes and counts that need no action, a line each.
 void fem_run_describe_statistics(const FemRunResult *result, char *text, size_t size);
 
-// As in summary.json: "elements", "cpu_s", …            (FEM_RUN_SPREAD_COUNT)
-extern const char *const fem_run_spread_names[];
-
 // summary.json of a run.
 void fem_run_summarise(const FemRunResult *result, Record *summary);
 

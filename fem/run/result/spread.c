@@ -13,7 +13,7 @@ static int own_vertices(const FemModel *model) {
   return count;
 }
 
-// In the order of fem_run_spread_names.
+// In the order of spread_names of fem/run/result/run_result.c.
 static void measure(const FemRunState *run, double values[FEM_RUN_SPREAD_COUNT]) {
   const FemRunResult *result = run->result;
   const FemRunPhases *phases = &result->cost.phases;

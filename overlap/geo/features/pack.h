@@ -20,22 +20,13 @@ typedef double GeoPack __attribute__((vector_size(GEO_PACK * sizeof(double))));
 
 #include "overlap/geo/features/invariants.h"
 
-// One lane to and from the whole matrix.
+// One lane of the whole matrix.
 static inline void geo_pack_matrix(const GeoMatrix *matrix, int lane, GeoSymmetric *pack) {
   for (int i = 0; i < GEO_LANES; i++)
     for (int j = 0; j <= i; j++) pack->at[geo_entry(i, j)][lane] = matrix->row[i][j];
 }
 
-static inline void geo_unpack_matrix(const GeoSymmetric *pack, int lane, GeoMatrix *matrix) {
-  for (int i = 0; i < GEO_LANES; i++)
-    for (int j = 0; j <= i; j++) matrix->row[i][j] = matrix->row[j][i] = pack->at[geo_entry(i, j)][lane];
-}
-
 // Numbers (count) of one lane.
-static inline void geo_pack_numbers(const double *numbers, int count, int lane, GeoPack *pack) {
-  for (int k = 0; k < count; k++) pack[k][lane] = numbers[k];
-}
-
 static inline void geo_unpack_numbers(const GeoPack *pack, int count, int lane, double *numbers) {
   for (int k = 0; k < count; k++) numbers[k] = pack[k][lane];
 }

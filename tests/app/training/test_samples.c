@@ -44,7 +44,7 @@ START_TEST(affine_directions_change_neither_features_nor_target) {
   for (size_t n = 0; n < count; n++) {
     const double *pair = pairs.coordinates + 24 * n, *gradient = pairs.gradient + 24 * n;
     double matrix[12], direction[24], features[36], changes[36], guess, guess_change, along = 0;
-    for (int i = 0; i < 12; i++) matrix[i] = random_normal(&random);
+    for (int i = 0; i < 12; i++) matrix[i] = suite_normal(&random);
     for (int v = 0; v < 8; v++)
       for (int r = 0; r < 3; r++) {
         direction[3 * v + r] = matrix[9 + r];

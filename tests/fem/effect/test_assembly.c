@@ -82,8 +82,8 @@ static void build(Scene *scene, int cells) {
   ck_assert(scene->x && scene->v && scene->force);
   Random random = random_seeded(61, 0);
   for (size_t i = 0; i < n; i++) {
-    scene->x[i] = scene->model.rest[i] + 0.1 / cells * random_normal(&random);
-    scene->v[i] = random_normal(&random);
+    scene->x[i] = scene->model.rest[i] + 0.1 / cells * suite_normal(&random);
+    scene->v[i] = suite_normal(&random);
   }
 }
 
@@ -211,7 +211,7 @@ static void check_jacobian(Scene *scene, const FemEffectOps *ops, void *effect, 
   ck_assert_ok(
       ops->add_jacobian(effect, &state, in_velocity ? 0 : scale, in_velocity ? scale : 0, &scene->matrix));
   Random random = random_seeded(62, 0);
-  for (size_t i = 0; i < n; i++) direction[i] = random_normal(&random);
+  for (size_t i = 0; i < n; i++) direction[i] = suite_normal(&random);
   fem_matrix_multiply(&scene->matrix, direction, product);
   for (int side = -1; side <= 1; side += 2) {
     for (size_t i = 0; i < n; i++) field[numbering->dof_of_unknown[i]] += side * h * direction[i];

@@ -28,8 +28,8 @@ static void displace(const Walk *walk, double time, int k, FemState *state) {
   for (int i = 0; i < model->free_count; i++) {
     int dof = walk->system.numbering.dof_of_unknown[i];
     double shear = dof % 3 == 0 ? 3e-3 * model->rest[dof + 2] : 0;
-    u[i] = (1 + 0.2 * k) * shear + 2e-6 * random_normal(&random);
-    v[i] = model->initial_velocity[dof] + 1e-3 * random_normal(&random);
+    u[i] = (1 + 0.2 * k) * shear + 2e-6 * suite_normal(&random);
+    v[i] = model->initial_velocity[dof] + 1e-3 * suite_normal(&random);
   }
   fem_system_scatter(&walk->system, time, u, v, state);
   free(u), free(v);

@@ -44,8 +44,8 @@ START_TEST(force_and_stiffness_are_derivatives_of_the_energy) {
   double *x = calloc((size_t)n, sizeof *x), *force = calloc((size_t)n, sizeof *x), h = 1e-5;
   double *d = calloc((size_t)n, sizeof *x), *Kd = calloc((size_t)n, sizeof *x);
   double *above = calloc((size_t)n, sizeof *x), *below = calloc((size_t)n, sizeof *x);
-  for (int i = 0; i < n; i++) x[i] = run.model.rest[i] + 0.06 * random_normal(&random);
-  for (int i = 0; i < n; i++) d[i] = random_normal(&random);
+  for (int i = 0; i < n; i++) x[i] = run.model.rest[i] + 0.06 * suite_normal(&random);
+  for (int i = 0; i < n; i++) d[i] = suite_normal(&random);
   fem_volume_evaluate(&volume, x);
   fem_volume_add_force(&volume, force);
   for (int i = 0; i < n; i++) {

@@ -30,7 +30,7 @@ static void draw_tet(Random *random, double rest[12], FemElement *element) {
 }
 
 static void move_by(const double rest[12], double size, Random *random, double x[12]) {
-  for (int r = 0; r < 12; r++) x[r] = rest[r] + size * random_normal(random);
+  for (int r = 0; r < 12; r++) x[r] = rest[r] + size * suite_normal(random);
 }
 
 // x = Q rest + shift.
@@ -102,7 +102,7 @@ START_TEST(a_linear_map_is_its_own_deformation_far_from_the_origin_too) {
     double rest[12], x[12], F[9], A[9];
     FemElement element;
     draw_tet(&random, rest, &element);
-    for (int r = 0; r < 9; r++) A[r] = random_normal(&random);
+    for (int r = 0; r < 9; r++) A[r] = suite_normal(&random);
     place(rest, A, (const double[3]){3, 4, 5}, x);
     fem_element_deformation(&element, x, F);
     for (int r = 0; r < 9; r++) ck_assert_near(F[r], A[r], 1e-12);
@@ -242,7 +242,7 @@ START_TEST(forces_and_torques_of_an_element_balance) {
     FemElement element;
     draw_tet(&random, rest, &element);
     move_by(rest, 0.3, &random, x);
-    for (int r = 0; r < 12; r++) v[r] = random_normal(&random);
+    for (int r = 0; r < 12; r++) v[r] = suite_normal(&random);
     reference_element_force(&element, &material, x, force);
     check_balance(x, force, 1e-12 * fmax(1, largest_entry(force, 12)));
     reference_element_damping_force(&element, &material, 0.7, x, v, force);
@@ -275,7 +275,7 @@ START_TEST(damping_force_and_matrix_agree) {
     FemElement element;
     draw_tet(&random, rest, &element);
     move_by(rest, 0.5, &random, x);
-    for (int r = 0; r < 12; r++) v[r] = random_normal(&random);
+    for (int r = 0; r < 12; r++) v[r] = suite_normal(&random);
     reference_element_damping_force(&element, &material, 0.7, x, v, force);
     reference_element_damping_matrix(&element, &material, 0.7, x, matrix);
     double scale = fmax(1, largest_entry(matrix, 144));
@@ -295,7 +295,7 @@ START_TEST(damping_stiffness_has_the_derivative_of_forces_that_turn_or_move_a_bo
     FemElement element;
     draw_tet(&random, rest, &element);
     move_by(rest, 0.2, &random, x);
-    for (int r = 0; r < 12; r++) v[r] = random_normal(&random);
+    for (int r = 0; r < 12; r++) v[r] = suite_normal(&random);
     reference_element_damping_stiffness(&element, &material, 0.7, x, v, matrix);
     check_symmetric(matrix);
     memset(turned, 0, sizeof turned);
@@ -425,7 +425,7 @@ START_TEST(viscosities_are_the_lame_parameters_of_damping) {
   static const double rest[12] = {0, 0, 0, 1, 0, 0, 0.2, 1, 0, 0.1, 0.3, 1};
   fem_element_create(&element, rest);
   double x[12], v[12], force[2][12];
-  for (int r = 0; r < 12; r++) x[r] = rest[r] + 0.1 * random_normal(&random), v[r] = random_normal(&random);
+  for (int r = 0; r < 12; r++) x[r] = rest[r] + 0.1 * suite_normal(&random), v[r] = suite_normal(&random);
   reference_element_damping_force(&element, &plain, 0.7, x, v, force[0]);
   reference_element_damping_force(&element, &viscous, 0, x, v, force[1]);
   for (int r = 0; r < 12; r++) ck_assert_near(force[0][r], force[1][r], 1e-14);

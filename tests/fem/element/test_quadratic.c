@@ -41,7 +41,7 @@ static void place_nodes(const double at[12], double x[30]) {
 }
 
 static void draw_around(Random *random, const double rest[30], double size, double x[30]) {
-  for (int r = 0; r < 30; r++) x[r] = rest[r] + size * random_normal(random);
+  for (int r = 0; r < 30; r++) x[r] = rest[r] + size * suite_normal(random);
 }
 
 static void map(const double F[9], const double *X, double *x) {
@@ -227,7 +227,7 @@ START_TEST(damping_force_power_and_matrices_agree) {
   reference_quadratic_create(&element, corners);
   place_nodes(corners, X);
   draw_around(&random, X, 0.1, x);
-  for (int r = 0; r < 30; r++) v[r] = random_normal(&random);
+  for (int r = 0; r < 30; r++) v[r] = suite_normal(&random);
   reference_quadratic_damping_force(&element, &material, 0.3, x, v, force);
   reference_quadratic_damping_matrix(&element, &material, 0.3, x, v, 0, 1, D);
   reference_quadratic_damping_matrix(&element, &material, 0.3, x, v, 1, 0, K);
@@ -307,7 +307,7 @@ static void make_mesh(FemMesh *mesh) {
   for (int a = 0; a < mesh->vertex_count; a++) {
     double *X = mesh->rest + 3 * a;
     if (X[0] * (1 - X[0]) * X[1] * (1 - X[1]) * X[2] * (1 - X[2]) < 1e-6) continue;
-    for (int c = 0; c < 3; c++) X[c] += 0.06 * random_normal(&random);
+    for (int c = 0; c < 3; c++) X[c] += 0.06 * suite_normal(&random);
     moved++;
   }
   ck_assert_int_eq(moved, 2);
@@ -442,7 +442,7 @@ static FemLoad load_on_surface(const FemLoadDef *def, FemMesh *mesh) {
 static double *bend(const FemMesh *mesh, Random *random) {
   size_t n = 3 * (size_t)mesh->vertex_count;
   double *x = malloc(n * sizeof *x);
-  for (size_t i = 0; i < n; i++) x[i] = mesh->rest[i] + 0.03 * random_normal(random);
+  for (size_t i = 0; i < n; i++) x[i] = mesh->rest[i] + 0.03 * suite_normal(random);
   return x;
 }
 
@@ -507,7 +507,7 @@ START_TEST(the_stiffness_of_a_closed_curved_surface_is_exact) {
   size_t n = 3 * (size_t)mesh.vertex_count;
   double *x = bend(&mesh, &random), *d = malloc(n * sizeof *d), *product = calloc(n, sizeof *d);
   double *above = calloc(n, sizeof *d), *below = calloc(n, sizeof *d), h = 1e-5;
-  for (size_t i = 0; i < n; i++) d[i] = random_normal(&random);
+  for (size_t i = 0; i < n; i++) d[i] = suite_normal(&random);
   for (int k = 0; k < load.face_count; k++) {
     const int *face = load.faces[k];
     double at[18], K[324];

@@ -33,7 +33,7 @@ static inline Weights weights_open(const char *name) {
   weights.way = calloc(weights.count, sizeof(double));
   weights.moved = calloc(weights.count, sizeof(double));
   weights.model.ops->training->read(weights.model.self, weights.own);
-  for (size_t i = 0; i < weights.count; i++) weights.way[i] = weights.own[i] * random_normal(&random);
+  for (size_t i = 0; i < weights.count; i++) weights.way[i] = weights.own[i] * suite_normal(&random);
   return weights;
 }
 

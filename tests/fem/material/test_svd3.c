@@ -73,7 +73,7 @@ START_TEST(random_matrices_are_restored_and_the_sign_follows_the_determinant) {
   int negative_count = 0;
   for (int k = 0; k < 20000; k++) {
     double F[9];
-    for (int r = 0; r < 9; r++) F[r] = random_normal(&random);
+    for (int r = 0; r < 9; r++) F[r] = suite_normal(&random);
     FemSvd3 svd;
     check_factors(F, &svd);
     double det = determinant(F);
@@ -155,7 +155,7 @@ START_TEST(the_rotation_is_the_nearest_one) {
   Random random = random_seeded(14, 0);
   for (int k = 0; k < 300; k++) {
     double F[9], R[9];
-    for (int r = 0; r < 9; r++) F[r] = random_normal(&random);
+    for (int r = 0; r < 9; r++) F[r] = suite_normal(&random);
     FemSvd3 svd;
     fem_svd3_factor(&svd, F);
     fem_svd3_rotation(&svd, R);

@@ -157,7 +157,7 @@ typedef struct Large {
 
 static double *random_reals(Random *random, int count) {
   double *reals = memory_zeroed((size_t)count, sizeof *reals);
-  for (int k = 0; k < count; k++) reals[k] = random_normal(random);
+  for (int k = 0; k < count; k++) reals[k] = suite_normal(random);
   return reals;
 }
 

@@ -74,7 +74,7 @@ START_TEST(a_following_pressure_is_the_gradient_of_the_volume) {
   Random random = random_seeded(3, 1);
   size_t n = 3 * (size_t)mesh.vertex_count;
   double *x = malloc(n * sizeof *x), *force = calloc(n, sizeof *force), h = 1e-5;
-  for (size_t i = 0; i < n; i++) x[i] = mesh.rest[i] + 0.05 * random_normal(&random);
+  for (size_t i = 0; i < n; i++) x[i] = mesh.rest[i] + 0.05 * suite_normal(&random);
   fem_load_add_force(&load, 2, x, force);
   for (size_t i = 0; i < n; i++) {
     double here = x[i];
@@ -102,8 +102,8 @@ START_TEST(the_stiffness_of_a_closed_surface_is_exact) {
   size_t n = 3 * (size_t)mesh.vertex_count;
   double *x = malloc(n * sizeof *x), *d = malloc(n * sizeof *d), *product = calloc(n, sizeof *d);
   double *above = calloc(n, sizeof *d), *below = calloc(n, sizeof *d), h = 1e-5;
-  for (size_t i = 0; i < n; i++) x[i] = mesh.rest[i] + 0.05 * random_normal(&random);
-  for (size_t i = 0; i < n; i++) d[i] = random_normal(&random);
+  for (size_t i = 0; i < n; i++) x[i] = mesh.rest[i] + 0.05 * suite_normal(&random);
+  for (size_t i = 0; i < n; i++) d[i] = suite_normal(&random);
   for (int k = 0; k < load.triangle_count; k++) {
     const int *t = load.triangles[k];
     double stiffness[81];

@@ -23,7 +23,7 @@ static inline void add_tet(Bar *bar, Random *random, const int tet[4]) {
   double dense[144] = {0}, w[12];
   for (int k = 0; k < 8; k++) {
     double mean[3] = {0};
-    for (int i = 0; i < 12; i++) w[i] = random_normal(random), mean[i % 3] += 0.25 * w[i];
+    for (int i = 0; i < 12; i++) w[i] = suite_normal(random), mean[i % 3] += 0.25 * w[i];
     for (int i = 0; i < 12; i++) w[i] -= mean[i % 3]; // no force from a translation
     for (int i = 0; i < 144; i++) dense[i] += w[i / 12] * w[i % 12];
   }
@@ -82,6 +82,6 @@ static inline void bar_destroy(Bar *bar) {
 static inline double *random_vector(int count, uint64_t seed) {
   Random random = random_seeded(seed, 0);
   double *values = memory_zeroed((size_t)count, sizeof *values);
-  for (int i = 0; i < count; i++) values[i] = random_normal(&random);
+  for (int i = 0; i < count; i++) values[i] = suite_normal(&random);
   return values;
 }

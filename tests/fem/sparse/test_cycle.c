@@ -72,7 +72,7 @@ static Status cycle_of(const Chain *chain, FemCycle *cycle) {
 static double *draw(uint64_t stream) {
   Random random = random_seeded(7, stream);
   double *vector = memory_zeroed(ROWS, sizeof *vector);
-  for (int i = 0; i < ROWS; i++) vector[i] = random_normal(&random);
+  for (int i = 0; i < ROWS; i++) vector[i] = suite_normal(&random);
   return vector;
 }
 

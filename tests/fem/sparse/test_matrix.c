@@ -229,7 +229,7 @@ START_TEST(an_outer_product_equals_its_dense_form) {
   for (int k = 0; k < CLIQUES; k++) {
     double w[3 * MOST], dense[9 * MOST * MOST];
     int size = 3 * c.clique_size[k];
-    for (int i = 0; i < size; i++) w[i] = random_normal(&c.random);
+    for (int i = 0; i < size; i++) w[i] = suite_normal(&c.random);
     for (int i = 0; i < size; i++)
       for (int j = 0; j < size; j++) dense[i * size + j] = w[i] * w[j];
     fem_matrix_add_outer(&c.matrix, c.clique_size[k], c.clique[k], w, 1.5);
@@ -244,10 +244,10 @@ END_TEST
 START_TEST(rows_and_vertices_are_parts_of_the_matrix) {
   Case c;
   set_up(&c, 53);
-  for (int k = 0; k < c.matrix.entry_count; k++) c.matrix.value[k] = random_normal(&c.random);
+  for (int k = 0; k < c.matrix.entry_count; k++) c.matrix.value[k] = suite_normal(&c.random);
   double x[DOFS], whole[DOFS], by_rows[DOFS], by_vertices[DOFS] = {0}, values[DOFS];
   int columns[DOFS];
-  for (int i = 0; i < c.matrix.size; i++) x[i] = random_normal(&c.random);
+  for (int i = 0; i < c.matrix.size; i++) x[i] = suite_normal(&c.random);
   fem_matrix_multiply(&c.matrix, x, whole);
   for (int dof = 0; dof < DOFS; dof++) {
     int unknown = c.unknown_of_dof[dof];
@@ -307,7 +307,7 @@ START_TEST(a_product_equals_the_dense_one) {
   set_up(&c, 5);
   fill(&c);
   double x[DOFS], y[DOFS], expected[DOFS] = {0};
-  for (int i = 0; i < c.matrix.size; i++) x[i] = random_normal(&c.random);
+  for (int i = 0; i < c.matrix.size; i++) x[i] = suite_normal(&c.random);
   for (int j = 0; j < c.matrix.size; j++)
     for (int k = c.matrix.col_begin[j]; k < c.matrix.col_begin[j + 1]; k++) {
       int i = c.matrix.row[k];
@@ -333,9 +333,9 @@ START_TEST(a_product_has_the_same_bits_with_any_number_of_threads) {
   for (int v = 0; v + 4 < LENGTH; v++)
     ck_assert_ok(fem_pattern_add_clique(pattern, 3, (int[]){v, v + 1, (v + 4 + v % 7 * 500) % LENGTH}, NULL));
   for (int dof = 0; dof < 3 * LENGTH; dof++)
-    unknown_of_dof[dof] = dof % 5 == 4 ? -1 : count++, x[dof] = random_normal(&random);
+    unknown_of_dof[dof] = dof % 5 == 4 ? -1 : count++, x[dof] = suite_normal(&random);
   ck_assert_ok(fem_matrix_create(&matrix, pattern, unknown_of_dof));
-  for (int k = 0; k < matrix.entry_count; k++) matrix.value[k] = random_normal(&random);
+  for (int k = 0; k < matrix.entry_count; k++) matrix.value[k] = suite_normal(&random);
   int before = omp_get_max_threads();
   omp_set_num_threads(1);
   fem_matrix_multiply(&matrix, x, one);

@@ -180,10 +180,10 @@ START_TEST(the_tangent_of_plastic_flow_is_consistent) {
   double *u = calloc((size_t)n, sizeof *u), *d = calloc((size_t)n, sizeof *d);
   double *Kd = calloc((size_t)n, sizeof *d), *above = calloc((size_t)n, sizeof *d), h = 1e-6;
   Random random = random_seeded(21, 0);
-  for (int i = 0; i < n; i++) u[i] = 0.05 * random_normal(&random);
+  for (int i = 0; i < n; i++) u[i] = 0.05 * suite_normal(&random);
   fem_system_scatter(&system, 0, u, NULL, &state);
   ck_assert_ok(fem_system_accept(&system, &state, 0));
-  for (int i = 0; i < n; i++) u[i] += 0.1 * random_normal(&random), d[i] = random_normal(&random);
+  for (int i = 0; i < n; i++) u[i] += 0.1 * suite_normal(&random), d[i] = suite_normal(&random);
   fem_system_scatter(&system, 0, u, NULL, &state);
   ck_assert_ok(fem_system_assemble(&system, &state, 1, 0, 0, &system.matrix));
   fem_matrix_multiply(&system.matrix, d, Kd);

@@ -30,7 +30,7 @@ START_TEST(a_torque_has_its_moment_and_no_resultant_however_the_body_is_bent) {
   ck_assert_ok(fem_load_create(&load, &def, &mesh, 0));
   size_t n = 3 * (size_t)mesh.vertex_count;
   double *x = malloc(n * sizeof *x), *force = calloc(n, sizeof *force);
-  for (size_t i = 0; i < n; i++) x[i] = mesh.rest[i] + 0.1 * random_normal(&random);
+  for (size_t i = 0; i < n; i++) x[i] = mesh.rest[i] + 0.1 * suite_normal(&random);
   fem_load_add_force(&load, 2, x, force);
   sum_forces(&mesh, x, force, &sum, &moment);
   ck_assert_near(vec3_length(sum), 0, 1e-13);

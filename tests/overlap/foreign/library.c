@@ -82,7 +82,7 @@ static int evaluate(void *self, const TetlapModelBatch *batch, char *message, si
     batch->volume[i] = 1e-9 * (rest[0] < rest[1] ? rest[0] : rest[1]);
     for (int c = 0; batch->centroid && c < 3; c++) batch->centroid[3 * i + c] = batch->pairs[24 * i + c];
   }
-  // As tests/overlap/test_wrap.c has it.
+  // As tests/overlap/wrap/test_wrap.c has it.
   for (size_t i = 0; WRONG == DOUBTS && batch->doubt && i < batch->count; i++) {
     const double x = batch->pairs[24 * i];
     batch->doubt[i] = x < 0.3 ? 0 : x > 0.6 ? INFINITY : 7e-6;

@@ -415,7 +415,7 @@ START_TEST(what_training_is_given_is_what_the_model_computes) {
   for (int member = 0; member < 60; member++) {
     DatagenHardPair pair = datagen_hard_make(class_named("uniform"), member);
     double directions[2 * 24], features[120], changes[2 * 120], log_volume, log_changes[2], rho, slope[120];
-    for (int i = 0; i < 48; i++) directions[i] = random_normal(&random);
+    for (int i = 0; i < 48; i++) directions[i] = suite_normal(&random);
     Answer answer = ask(&subject, pair.x, false);
     OverlapGeoOutcome outcome =
         overlap_geo_features_tangent(set, pair.x, 2, directions, features, changes, &log_volume, log_changes);

@@ -94,7 +94,7 @@ START_TEST(the_blend_has_the_derivatives_of_its_volume) {
   for (int trial = 0; trial < 20; trial++) {
     double pair[24], volume, gradient[24], hessian[576];
     corner_pair((double[3]){0.05, -0.06, 0.04}, pair);
-    for (int i = 0; i < 24; i++) pair[i] += 0.01 * random_normal(&random);
+    for (int i = 0; i < 24; i++) pair[i] += 0.01 * suite_normal(&random);
     blend(pair, &volume, gradient, hessian);
     const double h = 1e-6;
     for (int i = 0; i < 24; i++) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The overlap model `geo` in vector lanes: every instruction set against the scalar form.
+#include "packs.h"
 #include "suite.h"
 
 #include <string.h>
@@ -127,7 +128,7 @@ START_TEST(features_and_their_gradients_are_the_scalar_ones) {
   kernel->frame(&bundle, 0, &block);
   kernel->features(set, &block);
   for (int f = 0; f < set->count; f++)
-    for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) block.weights[f][j] = random_normal(&random);
+    for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) block.weights[f][j] = suite_normal(&random);
   for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) block.factor[j] = 1 + j;
   kernel->pull(set, &block);
   for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) {
@@ -143,7 +144,7 @@ START_TEST(features_and_their_gradients_are_the_scalar_ones) {
     one->features(set, &projector, &invariants, features);
     for (int f = 0; f < set->count; f++) weights[f][0] = block.weights[f][j];
     one->pull(set, &invariants, weights, &sweep, &packed);
-    geo_unpack_matrix(&packed, 0, &slope);
+    packs_take_matrix(&packed, 0, &slope);
     overlap_geo_frame_pull(&frame, &slope, &adjoint);
     double largest = 0;
     for (int k = 0; k < 24; k++) largest = fmax(largest, fabs(adjoint.gradient[k]));
@@ -174,7 +175,7 @@ START_TEST(centroids_are_the_scalar_ones) {
   kernel->features(set, &block);
   for (int m = 0; m < count; m++)
     for (int j = 0; j < OVERLAP_GEO_BLOCK; j++)
-      block.outputs[1 + m][j] = random_normal(&random) * (j % 2 ? 3 : 0.1);
+      block.outputs[1 + m][j] = suite_normal(&random) * (j % 2 ? 3 : 0.1);
   kernel->centroid(set, &block);
   for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) {
     OverlapGeoFrame frame;
@@ -213,10 +214,10 @@ static void bend_alone(const OverlapGeoFeatureSet *set, const OverlapGeoFrame *f
   GeoPack packs[OVERLAP_GEO_MAX_FEATURES], weight_packs[OVERLAP_GEO_MAX_FEATURES] = {{0}};
   GeoMatrix slope;
   geo_pack_matrix(&frame->projector, 0, &projector);
-  geo_pack_numbers(weights, set->count, 0, weight_packs);
+  packs_put_numbers(weights, set->count, 0, weight_packs);
   one->features(set, &projector, &invariants, packs);
   one->pull(set, &invariants, weight_packs, &sweep, &packed);
-  geo_unpack_matrix(&packed, 0, &slope);
+  packs_take_matrix(&packed, 0, &slope);
   overlap_geo_frame_pull(frame, &slope, &adjoint);
   memcpy(gradient, adjoint.gradient, sizeof adjoint.gradient);
   for (int j = 0; j < 24; j++) {
@@ -229,7 +230,7 @@ static void bend_alone(const OverlapGeoFeatureSet *set, const OverlapGeoFrame *f
     one->push(set, &invariants, &projector, &change, packs);
     geo_unpack_numbers(packs, set->count, 0, feature_changes[j]);
     one->bend(set, &invariants, weight_packs, &sweep, &change, &packed);
-    geo_unpack_matrix(&packed, 0, &slope_change);
+    packs_take_matrix(&packed, 0, &slope_change);
     overlap_geo_frame_bend(frame, &adjoint, &slope, &tangent, &slope_change, column);
     for (int i = 0; i < 24; i++) hessian[24 * i + j] = column[i];
   }
@@ -279,7 +280,7 @@ START_TEST(second_derivatives_are_the_scalar_ones) {
     kernel->frame(&bundle, 0, &block);
     kernel->features(set, &block);
     for (int f = 0; f < set->count; f++)
-      for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) block.weights[f][j] = random_normal(&random);
+      for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) block.weights[f][j] = suite_normal(&random);
     for (int j = 0; j < OVERLAP_GEO_BLOCK; j++) block.factor[j] = 1 + j;
     kernel->bend(set, &bundle, 0, &block, &bends);
     kernel->finish(true, &block, &bends);

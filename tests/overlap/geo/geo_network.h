@@ -24,10 +24,10 @@ static inline GeoNetwork geo_network_random(int feature_count, uint64_t seed) {
   Random random = random_seeded(seed, 0);
   for (int i = 0; i < GEO_NETWORK_WIDTH; i++) {
     for (int j = 0; j <= feature_count; j++)
-      network.inner[i][j] = random_normal(&random) / sqrt(feature_count);
+      network.inner[i][j] = suite_normal(&random) / sqrt(feature_count);
     for (int j = 0; j <= GEO_NETWORK_WIDTH; j++)
-      network.outer[i][j] = random_normal(&random) / sqrt(GEO_NETWORK_WIDTH);
-    network.last[i] = random_normal(&random) / sqrt(GEO_NETWORK_WIDTH);
+      network.outer[i][j] = suite_normal(&random) / sqrt(GEO_NETWORK_WIDTH);
+    network.last[i] = suite_normal(&random) / sqrt(GEO_NETWORK_WIDTH);
   }
   return network;
 }

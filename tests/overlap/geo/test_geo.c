@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The overlap model `geo` before any network: the analytic centre, the frame, the features, and how each of
 // them changes with the coordinates.
+#include "packs.h"
 #include "suite.h"
 
 #include <stdio.h>
@@ -176,9 +177,9 @@ static void pull_features(const OverlapGeoKernel *kernel, const OverlapGeoFeatur
                           OverlapGeoSweep *sweep, GeoMatrix *slope) {
   GeoSymmetric packed;
   GeoPack packs[OVERLAP_GEO_MAX_FEATURES] = {{0}};
-  geo_pack_numbers(weights, set->count, LANE, packs);
+  packs_put_numbers(weights, set->count, LANE, packs);
   kernel->pull(set, invariants, packs, sweep, &packed);
-  geo_unpack_matrix(&packed, LANE, slope);
+  packs_take_matrix(&packed, LANE, slope);
 }
 
 static void bend_features(const OverlapGeoKernel *kernel, const OverlapGeoFeatureSet *set,
@@ -187,9 +188,9 @@ static void bend_features(const OverlapGeoKernel *kernel, const OverlapGeoFeatur
                           GeoMatrix *slope_change) {
   GeoSymmetric packed;
   GeoPack packs[OVERLAP_GEO_MAX_FEATURES] = {{0}};
-  geo_pack_numbers(weights, set->count, LANE, packs);
+  packs_put_numbers(weights, set->count, LANE, packs);
   kernel->bend(set, invariants, packs, sweep, change, &packed);
-  geo_unpack_matrix(&packed, LANE, slope_change);
+  packs_take_matrix(&packed, LANE, slope_change);
 }
 
 static void features_of(int count, const double x[24], double *features) {
@@ -287,7 +288,7 @@ START_TEST(the_changes_of_frame_and_features_are_their_derivatives) {
   OverlapGeoFrame frame, up, down;
   for (int member = 0, seen = 0; next_frame(class_named("uniform"), &member, &pair, &frame); seen++) {
     double h = 1e-6 * cbrt(frame.volume), direction[24], x[24];
-    for (int i = 0; i < 24; i++) x[i] = pair.x[i] + h * (direction[i] = random_normal(&random));
+    for (int i = 0; i < 24; i++) x[i] = pair.x[i] + h * (direction[i] = suite_normal(&random));
     ck_assert_int_eq(overlap_geo_frame(&up, x), OVERLAP_GEO_INSIDE);
     for (int i = 0; i < 24; i++) x[i] = pair.x[i] - h * direction[i];
     ck_assert_int_eq(overlap_geo_frame(&down, x), OVERLAP_GEO_INSIDE);
@@ -316,7 +317,7 @@ END_TEST
 
 static void random_matrix(Random *random, GeoMatrix *matrix) {
   for (int i = 0; i < 8; i++)
-    for (int j = 0; j <= i; j++) matrix->row[i][j] = matrix->row[j][i] = random_normal(random);
+    for (int j = 0; j <= i; j++) matrix->row[i][j] = matrix->row[j][i] = suite_normal(random);
 }
 
 static double inner_product(const GeoMatrix *a, const GeoMatrix *b) {
@@ -335,7 +336,7 @@ START_TEST(the_backward_sweep_is_the_transpose_and_its_change_is_symmetric) {
     double f[OVERLAP_GEO_MAX_FEATURES], w[OVERLAP_GEO_MAX_FEATURES], df[OVERLAP_GEO_MAX_FEATURES];
     random_matrix(&random, &p);
     for (int i = 0; i < 64; i++) (&p.row[0][0])[i] *= 0.3;
-    for (int i = 0; i < set->count; i++) w[i] = random_normal(&random);
+    for (int i = 0; i < set->count; i++) w[i] = suite_normal(&random);
     OverlapGeoInvariants invariants, change;
     OverlapGeoSweep sweep;
     find_features(overlap_geo_features_kernel(), set, &p, &invariants, f);
@@ -384,7 +385,7 @@ START_TEST(every_kernel_gives_the_same_bits) {
       geo_pack_matrix(&matrix, lane, &p);
       random_matrix(&random, &matrix);
       geo_pack_matrix(&matrix, lane, &dp);
-      for (int i = 0; i < set->count; i++) weights[i][lane] = random_normal(&random);
+      for (int i = 0; i < set->count; i++) weights[i][lane] = suite_normal(&random);
     }
     for (int k = 0; k < kernel_count; k++) {
       OverlapGeoInvariants invariants, change;
