@@ -24,13 +24,22 @@ static void quote(const char *text, char *quoted, size_t size) {
   quoted[used] = 0;
 }
 
+// A failure of the model's word, which the reader takes for an override's.
+static Status name_option(Status status, const char *override, const char *overlap) {
+  char told[CHOICE_SIZE + 64], message[CHOICE_SIZE];
+  snprintf(told, sizeof told, "--set %s: contact.overlap: ", override);
+  if (!status || strncmp(status_message(), told, strlen(told)) != 0) return status;
+  snprintf(message, sizeof message, "%s", status_message() + strlen(told));
+  return status_fail(status, "--overlap %s: %s", overlap, message);
+}
+
 static Status read_with(SceneNode *root, const char *path, const char *overlap, FemSceneDef *scene) {
   char absolute[PATH_MAX], quoted[CHOICE_SIZE], override[CHOICE_SIZE + 32];
   bool is_file = app_model_names_settle(overlap, absolute);
   quote(is_file ? absolute : overlap, quoted, sizeof quoted);
   snprintf(override, sizeof override, "contact.overlap=%s", quoted);
   const char *overrides[1] = {override};
-  return app_scene_read_tree(path, root, overrides, 1, scene);
+  return name_option(app_scene_read_tree(path, root, overrides, 1, scene), override, overlap);
 }
 
 // A scene without contact stays one: choosing a model does not switch contact on. A scene that cannot be

@@ -241,6 +241,15 @@ Status app_scene_read_create_defaults(const SceneSection *section, void **defaul
   return status;
 }
 
+// Of the model's word; the section's where it has none.
+static FemScenePlace overlap_place(const SceneNode *root) {
+  const SceneNode *contact = app_scene_tree_find(root, "contact");
+  if (!contact) return (FemScenePlace){0};
+  const SceneNode *word = contact->kind == SCENE_NODE_MAP ? app_scene_tree_find(contact, "overlap") : NULL;
+  if (!word) word = contact;
+  return (FemScenePlace){word->line, word->column};
+}
+
 static Status read_tree(const char *path, const SceneNode *root, FemSceneDef *scene) {
   if (root->kind == SCENE_NODE_NULL)
     return app_scene_tree_fail(root, "the scene is empty; it needs at least 'time' and 'bodies'");
@@ -252,6 +261,7 @@ static Status read_tree(const char *path, const SceneNode *root, FemSceneDef *sc
   if (!scene->path) return status_no_memory("the scene");
   TRY(read_defaults(&app_scene_keys_root, scene));
   TRY(read_section(&app_scene_keys_root, root, scene));
+  scene->contact.overlap_place = overlap_place(root);
   return app_scene_check(root, scene);
 }
 

@@ -203,14 +203,14 @@ typedef struct FemContactPairDef {
 
 typedef struct FemContactDef {
   bool is_on;
-  FemScenePlace place;
   double stiffness;     // κ; 0: chosen (fem/model/compliance/compliance.h, or the softest body's E)
   FemContactLawDef law; // of the potential `field`, in place of κ
   ContactPotential potential;
   FemContactPairDef *pairs; //                                (pair_count)
   int pair_count;
-  char *overlap; // name of the overlap model
-  double margin; // [m]; 0: chosen
+  char *overlap;               // name of the overlap model
+  FemScenePlace overlap_place; // line 0: the command line has it
+  double margin;               // [m]; 0: chosen
   int smooth; // how often the edges of curved surfaces are halved for contact; 0: facets as they are; −1:
               // chosen
   double crease;                        // edges between faces that make more stay sharp [°]

@@ -11,7 +11,7 @@ import numpy as np
 import torch
 
 import tetlap
-from tetlap.serve import Model
+from tetlap.serve import Model, ModelError
 
 ROOT = Path(os.environ["TETLAP_SOURCE_DIR"])
 sys.path.insert(0, str(ROOT / "examples" / "models"))
@@ -52,6 +52,32 @@ class Module(unittest.TestCase):
         np.testing.assert_allclose(answer["gradient"], pairs)
         np.testing.assert_allclose(answer["doubt_gradient"], slope)
         self.assertNotIn("doubt_gradient", model(pairs, ("gradient",)))
+
+
+    def test_a_volume_that_does_not_follow_the_pairs_has_no_gradient(self):
+        class Detached(torch.nn.Module):
+            @torch.no_grad()
+            def forward(self, pairs):
+                return {"volume": (pairs**2).sum((1, 2, 3))}
+
+        self.assertEqual(Model(Detached, "it").gives, 0)
+
+    def test_a_module_may_change_its_pairs_in_place(self):
+        class Shifting(torch.nn.Module):
+            def forward(self, pairs):
+                pairs += 1
+                return (pairs**2).sum((1, 2, 3))
+
+        pairs = some_pairs(5)
+        np.testing.assert_allclose(Model(Shifting, "it")(pairs, ("gradient",))["gradient"], 2 * (pairs + 1))
+
+    def test_a_tuple_is_told_to_be_a_dict(self):
+        class Both(torch.nn.Module):
+            def forward(self, pairs):
+                return pairs.sum((1, 2, 3)), pairs.mean((1, 2))
+
+        with self.assertRaisesRegex(ModelError, "it returned a tuple as volume.*dict"):
+            Model(Both, "it")
 
 
 class Geo(unittest.TestCase):

@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 import threading
 import unittest
 from pathlib import Path
@@ -214,6 +215,17 @@ class WhatIsWrongWithPairs(unittest.TestCase):
         self.refused(ValueError, "threads is -1; expected", shifted(0), threads=-1)
         self.refused(ValueError, "threads is 2 beside a tetlap.Model", shifted(0), tetlap.Model(), threads=2)
         self.refused(OSError, "none.safetensors", shifted(0), "/nowhere/none.safetensors")
+        self.refused(TypeError, "expected a name, a file, or a tetlap.Model .a function", shifted(0), np.sum)
+
+    def test_a_file_that_was_written_anew_is_read_anew(self):
+        weights = tetlap.read_weights("geo-small")
+        with tempfile.TemporaryDirectory() as folder:
+            file, volumes, x = Path(folder, "ä.safetensors"), [], np.random.default_rng(3).random((20, 2, 4, 3))
+            for _ in range(2):
+                tetlap.write_weights(file, weights)
+                volumes.append(tetlap.overlap(x, f"both={file}").volume.sum())
+                weights["layer.0.bias"] *= 1.5
+        self.assertNotEqual(*volumes)
 
 
 def cube(cells, origin=0.0):
@@ -322,6 +334,12 @@ class TheLibrary(unittest.TestCase):
     def test_reading_a_run_loads_no_library(self):
         words = "import os, tetlap; assert 'libtetlap' not in open('/proc/self/maps').read()"
         subprocess.run([sys.executable, "-c", words], check=True)
+
+    def test_a_python_without_numpy_is_told_to_install_it(self):
+        words = "import sys; sys.modules['numpy'] = None; import tetlap"
+        told = subprocess.run([sys.executable, "-c", words], capture_output=True, text=True, check=False).stderr
+        self.assertIn("tetlap needs NumPy", told.splitlines()[-1])
+        self.assertNotIn("_compare.py", told)
 
     def test_a_library_that_is_not_there_is_named(self):
         words = """if True:

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A run that Python steps."""
 
+import copy
 import gc
 import os
+import pickle
 import signal
 import subprocess
 import tempfile
@@ -48,6 +50,10 @@ class Stepping(unittest.TestCase):
             self.assertFalse(points.flags.owndata or points.flags.writeable)
             self.assertEqual(block.tets.max(), 63)
             self.assertAlmostEqual(block.mass, 1, 12)
+            for name in ("points", "forces", "position"):
+                with self.assertRaises(AttributeError):
+                    setattr(block, name, before)
+            self.assertIs(block.points, points)
 
     def test_forces_are_those_of_the_vertices_and_opposite_on_the_other(self):
         with opened() as sim:
@@ -363,6 +369,21 @@ class Refusals(unittest.TestCase):
             sim.advance(until=0.05)
             self.assertEqual(sim.time, 0.05)
             self.assertGreater(len(times), 3)
+
+    def test_one_that_a_callback_closes_is_closed(self):
+        sim = opened()
+        sim.on_step(lambda it: it.close())
+        with self.assertRaisesRegex(tetlap.Error, "is closed"):
+            sim.advance(0.05)
+
+    def test_copies_are_refused_and_leave_the_run_alone(self):
+        with opened() as sim:
+            for it, words in ((sim, "fork"), (sim.state(), "State.write")):
+                for make in (copy.copy, copy.deepcopy, pickle.dumps):
+                    with self.assertRaisesRegex(TypeError, words):
+                        make(it)
+            gc.collect()
+            sim.advance(0.01)
 
     def test_ctrl_c_ends_the_program(self):
         sim = opened()

@@ -95,6 +95,8 @@ class Tensors(unittest.TestCase):
         self.assertFalse(volume.requires_grad)
 
     def test_what_is_wrong_is_said(self):
+        with self.assertRaisesRegex(TypeError, "x is a tensor that requires grad; expected x.detach"):
+            tetlap.overlap(torch.tensor(shifted(0.5), requires_grad=True))
         for kind, text, bad in (
             (TypeError, "x is a ndarray; expected a torch.Tensor", shifted(0.5)),
             (TypeError, "x has dtype torch.int64; expected torch.float64 or torch.float32", torch.zeros((2, 4, 3), dtype=torch.int64)),

@@ -40,6 +40,15 @@ UnknownNameError (a KeyError) is a name that is not there, RunError a run that f
 all else that is tetlap's. Messages of the program go to the logger "tetlap": logging.basicConfig(level="INFO") shows them.
 """
 
+try:
+    import numpy as _  # noqa: F401
+except ModuleNotFoundError as error:
+    if error.name != "numpy":
+        raise
+    import sys
+
+    raise ImportError(f"tetlap needs NumPy, which {sys.executable} does not have: install it there (Debian: python3-numpy; else `python3 -m pip install numpy`)") from None
+
 from ._compare import Compared, Comparison, compare
 from ._errors import Error, RunError, UnknownNameError
 from ._gradient import gradient

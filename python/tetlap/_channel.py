@@ -139,6 +139,7 @@ class Channel:
                 stop = self._call(on_step)
             except Exception as error:  # the run stops after this step and can be used
                 raised, stop = error, True
+            self._check()  # a callback may have closed it
             self._send(_REQUEST.pack(GO, 0, 0, 1 if stop else 0))
         if code in (_USAGE, _INPUT) and what != HELLO:
             raise _Refused(text)

@@ -81,6 +81,11 @@ class Body:
         #: vertices of the tetrahedra, counted within the body (m, 4)
         self.tets: np.ndarray = arrays["tets"][self._tets] - about["vertex_begin"]
 
+    def __setattr__(self, name, value):
+        if "tets" in self.__dict__:
+            raise AttributeError(f"body '{self.name}': {name} cannot be set; Simulation.restore sets a state, drive and loads act on a body")
+        super().__setattr__(name, value)
+
     @property
     def forces(self) -> np.ndarray:
         """Contact's forces on the vertices, friction included [N], a view (n, 3)."""
@@ -317,6 +322,9 @@ class State:
     def __del__(self):
         self._simulation._dropped.append(self._number)
 
+    def __reduce_ex__(self, _):
+        raise TypeError("a State is neither copied nor pickled: State.write and Simulation.read_state hand it over as a file")
+
     def __repr__(self):
         return f"<State t={self.time} of {self._simulation!r}>"
 
@@ -383,6 +391,9 @@ class Simulation:
     def __del__(self):
         if hasattr(self, "_channel"):
             self.close()
+
+    def __reduce_ex__(self, _):
+        raise TypeError("a Simulation is neither copied nor pickled: fork() opens another one at the same state")
 
     def close(self) -> None:
         """Ends the program. Arrays that were read stay as they are."""

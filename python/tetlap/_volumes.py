@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import enum
 import functools
 import os
@@ -50,8 +51,18 @@ class Overlap:
 
 
 @functools.lru_cache(maxsize=32)
-def _model_of_name(name, threads):
+def _model_of_name(name, threads, _):
     return _library.Model(name, threads=threads)
+
+
+def _stamp(name):
+    """Of the file that a name ends in, so that one which was written anew is read anew; None: it names no file."""
+    path = os.fsdecode(name).rpartition("=")[2]
+    for file in (path, path.rpartition(":")[0]):
+        with contextlib.suppress(OSError):
+            known = os.stat(file)
+            return known.st_dev, known.st_ino, known.st_mtime_ns, known.st_size
+    return None
 
 
 def _model(model, threads):
@@ -59,7 +70,10 @@ def _model(model, threads):
         if threads:
             raise ValueError(f"threads is {threads} beside a tetlap.Model; expected tetlap.Model(…, threads={threads})")
         return model
-    return _model_of_name(os.fspath(model), threads)
+    if not isinstance(model, (str, os.PathLike)):
+        raise TypeError(f"model is {model!r}; expected a name, a file, or a tetlap.Model (a function answers in tetlap.run and tetlap.evaluate)")
+    name = os.fspath(model)
+    return _model_of_name(name, threads, _stamp(name))
 
 
 def _check_hessian(model):
@@ -70,6 +84,8 @@ def _check_hessian(model):
 
 def _real(array, name):
     """As float64, contiguous; the array itself where it is that already."""
+    if getattr(array, "requires_grad", False):
+        raise TypeError(f"{name} is a tensor that requires grad; expected {name}.detach(), or tetlap.torch.overlap, which goes on with the gradient")
     array = np.asarray(array)
     if array.dtype.kind not in "fiu" or array.dtype.itemsize > 8:
         raise TypeError(f"{name} has dtype {array.dtype}; expected float64, or real numbers that convert to it")

@@ -54,7 +54,7 @@ class Model:
     """A callable as the protocol wants it: arrays in, a dict of float64 arrays out."""
 
     def __init__(self, function, name):
-        self.name = name
+        self.name, self.gives = name, None  # until it has answered for the probe
         if isinstance(function, type):
             function = function()
         if not callable(function):
@@ -92,26 +92,30 @@ class Model:
             x = x.to(parameter.device, parameter.dtype)
         x.requires_grad_(needs)
         with torch.set_grad_enabled(needs):
-            answer = self._module(x)
+            answer = self._module(x.clone())  # which it may change in place
             answer = dict(answer) if isinstance(answer, dict) else {"volume": answer}
             for value, slope in (("volume", "gradient"), ("doubt", "doubt_gradient")):
-                if slope in wants and slope not in answer and answer.get(value) is not None:
-                    answer[slope] = self._differentiate(answer[value], x)
+                if slope in wants and slope not in answer and isinstance(answer.get(value), torch.Tensor):
+                    found = self._differentiate(answer[value], x)
+                    if found is not None:
+                        answer[slope] = found
+                    elif value == "doubt" or self.gives is not None:  # a V that does not follow the probe has no gradient
+                        answer[slope] = torch.zeros_like(x)
         return answer
 
     def _differentiate(self, number, x):
+        """None where it does not follow x."""
         import torch
 
-        if not number.requires_grad:  # it does not follow x
-            return torch.zeros_like(x)
-        slope = torch.autograd.grad(number.sum(), x, retain_graph=True, allow_unused=True)[0]
-        return torch.zeros_like(x) if slope is None else slope
+        return torch.autograd.grad(number.sum(), x, retain_graph=True, allow_unused=True)[0] if number.requires_grad else None
 
     def _check(self, key, value, count):
         if key not in _ARRAYS:
             raise ModelError(f"{self.name} returned {key!r}, which is none of {', '.join(_ARRAYS)}")
         if value is None:
             raise ModelError(f"{self.name} returned None as {key}: is a `return` missing?")
+        if isinstance(value, tuple):
+            raise ModelError(f"{self.name} returned a tuple as {key}, expected an array; several arrays are a dict, {{\"volume\": …, \"centroid\": …}}")
         if hasattr(value, "detach"):
             value = value.detach().cpu()
             value = (value.double() if value.is_floating_point() else value).numpy()
@@ -238,7 +242,8 @@ def _tell(error):
     while frames is not None and frames.tb_frame.f_code.co_filename in (__file__, "<frozen importlib._bootstrap>", importlib.util.__file__,
                                                                          "<frozen importlib._bootstrap_external>"):
         frames = frames.tb_next
-    first = "".join(traceback.format_exception_only(type(error), error)).strip().splitlines()[-1]
+    lines = "".join(traceback.format_exception_only(type(error), error)).splitlines()
+    first = next(line for line in lines if line[:1].strip())  # above it, indented, where the syntax is wrong
     if isinstance(error, ModuleNotFoundError):
         first += f" in {sys.executable}; install it there, or set TETLAP_PYTHON to a Python that has it"
     return first + "\n" + "".join(traceback.format_exception(type(error), error, frames)).rstrip()
@@ -269,7 +274,10 @@ def attend(channel, find_model, on_error=None):
 
 
 def main():
-    attend(Channel(3, 4), lambda: load(sys.argv[1]))
+    try:
+        attend(Channel(3, 4), lambda: load(sys.argv[1]))
+    except KeyboardInterrupt:  # the program has been told
+        sys.exit(130)
 
 
 if __name__ == "__main__":

@@ -184,7 +184,5 @@ static const SceneKey contact_keys[] = {
          "for the defaults"},
     {0},
 };
-const SceneSection app_scene_keys_contact = {.help = "bodies push each other apart",
-                                             .keys = contact_keys,
-                                             PLACE(FemContactDef, place),
-                                             .finish = finish_contact};
+const SceneSection app_scene_keys_contact = {
+    .help = "bodies push each other apart", .keys = contact_keys, .finish = finish_contact};

@@ -5,6 +5,7 @@
 
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/files/file.h"
@@ -95,6 +96,14 @@ static Status locate(const FemSceneDef *scene, char word[PATH_MAX]) {
   return fits ? STATUS_OK : status_fail(STATUS_INPUT, "contact.overlap: the path is too long");
 }
 
+// Where the model is named.
+static FemSceneWhere find_word(const FemSceneDef *scene) {
+  FemSceneWhere where = fem_scene_where(scene, &scene->contact.overlap_place);
+  if (scene->path && scene->contact.overlap_place.line == 0)
+    snprintf(where.text, sizeof where.text, "%s with --overlap or --set", scene->path);
+  return where;
+}
+
 Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *name, OverlapModel *overlap) {
   char word[PATH_MAX];
   *overlap = (OverlapModel){0};
@@ -102,7 +111,7 @@ Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *n
   TRY(locate(scene, word));
   Status status = overlap_models_create(overlap, word);
   if (!status) return status;
-  return status_prefix(status, "%s: contact.overlap", fem_scene_where(scene, &scene->contact.place).text);
+  return status_prefix(status, "%s: contact.overlap", find_word(scene).text);
 }
 
 // Forces need more than V.
@@ -112,10 +121,13 @@ static Status check_model(const FemSceneDef *scene, const OverlapModel *model) {
   if (has_gradient || (is_field && overlap_model_has_own_centroid(model))) return STATUS_OK;
   return status_fail(
       STATUS_INPUT,
-      "%s: contact.overlap: '%s' gives %s: forces need its %s. `tetlap eval` grades it on pairs",
-      fem_scene_where(scene, &scene->contact.place).text, model->ops->name,
+      "%s: contact.overlap: '%s' gives %s: forces need its %s%s. `tetlap eval` grades it on pairs",
+      find_word(scene).text, model->ops->name,
       overlap_model_has_own_centroid(model) ? "V and the centroid" : "V alone",
-      is_field ? "centroid or its gradient" : "gradient");
+      is_field ? "centroid or its gradient" : "gradient",
+      overlap_source_of(scene->contact.overlap) == OVERLAP_SOURCE_PYTHON
+          ? " (which PyTorch has where V follows from the pairs, without detach() and no_grad())"
+          : "");
 }
 
 static Status build(Contact *contact) {

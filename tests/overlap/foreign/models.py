@@ -50,7 +50,7 @@ class Made:
 
 def raises(pairs):
     if len(pairs) > 1:
-        raise ValueError("no more than one")
+        raise ValueError("no more than one\npair")
     return box(pairs)
 
 
