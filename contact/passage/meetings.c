@@ -28,6 +28,29 @@ typedef struct Work {
   double rounding;
 } Work;
 
+// ---- What is deep.
+
+// Of that side's element in the other cell or shape, as a share of the way to its middle.
+static double reach_of(const ContactLayout *layout, const ContactPair *pair, const ContactFieldPair *field,
+                       int side, const double *middles) {
+  int other = pair->cells[1 - side];
+  double middle = other < 0
+                      ? contact_shape_middle(&layout->def.shapes[layout->interfaces[pair->interface].shape])
+                      : middles[other];
+  return field->depths[1 - side] / middle;
+}
+
+void contact_meetings_mark(const ContactLayout *layout, const ContactEvaluation *evaluation,
+                           const double *middles, double least, bool *is_marked) {
+  for (int k = 0; k < evaluation->pair_count; k++) {
+    const ContactPair *pair = &evaluation->pairs[k];
+    if (is_marked[pair->interface]) continue;
+    for (int side = 0; side < 2; side++)
+      if (pair->cells[side] >= 0 && !(reach_of(layout, pair, &evaluation->fields[k], side, middles) < least))
+        is_marked[pair->interface] = true;
+  }
+}
+
 // ---- The items of each element.
 
 static Status reserve(ContactMeetings *meetings, const ContactLayout *layout,
@@ -123,11 +146,8 @@ static void add_item(const Work *work, int item, ContactMeeting *meeting) {
   Vec3 slope = vec3_at(field->slopes[1 - side]);
   vec3_accumulate(meeting->slope, vec3_scale(field->weighed[side], slope));
   meeting->size += field->weighed[side] * vec3_length(slope);
-  if (!work->middles) return;
-  double middle = other < 0
-                      ? contact_shape_middle(&layout->def.shapes[layout->interfaces[pair->interface].shape])
-                      : work->middles[other];
-  meeting->reach = fmax(meeting->reach, field->depths[1 - side] / middle);
+  if (work->middles)
+    meeting->reach = fmax(meeting->reach, reach_of(layout, pair, field, side, work->middles));
 }
 
 // Adds the element's parts without what is met in them, but `cell_end` counts their cells. Of each item, the
@@ -165,6 +185,16 @@ static void fill_parts(const Work *work, int first, int begin, int end) {
   }
 }
 
+static void add_patch(const Work *work, const ContactPatches *patches, const ContactPatch *patch) {
+  const ContactMeetings *meetings = work->meetings;
+  for (int e = patch->element_begin; e < patch->element_end; e++) {
+    int begin = meetings->begin[e], end = meetings->begin[e + 1], first = meetings->count;
+    grow_trees(work, begin, end);
+    add_parts(work, patch->interface, patches->elements[e].tet, begin, end);
+    fill_parts(work, first, begin, end);
+  }
+}
+
 static int compare(const void *first, const void *second) {
   const ContactMeeting *a = first, *b = second;
   if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
@@ -173,19 +203,15 @@ static int compare(const void *first, const void *second) {
 }
 
 Status contact_meetings_find(ContactMeetings *meetings, const ContactLayout *layout,
-                             const ContactEvaluation *evaluation, const double *middles, double rounding) {
+                             const ContactEvaluation *evaluation, const double *middles, double rounding,
+                             const bool *is_marked) {
   const ContactPatches *patches = &evaluation->patches;
   const Work work = {meetings, layout, evaluation, middles, rounding};
   meetings->count = 0;
   TRY(reserve(meetings, layout, evaluation));
   sort_items(meetings, patches, evaluation->pair_count);
   for (int p = 0; p < patches->patch_count; p++)
-    for (int e = patches->patches[p].element_begin; e < patches->patches[p].element_end; e++) {
-      int begin = meetings->begin[e], end = meetings->begin[e + 1], first = meetings->count;
-      grow_trees(&work, begin, end);
-      add_parts(&work, patches->patches[p].interface, patches->elements[e].tet, begin, end);
-      fill_parts(&work, first, begin, end);
-    }
+    if (is_marked[patches->patches[p].interface]) add_patch(&work, patches, &patches->patches[p]);
   if (meetings->count > 1) qsort(meetings->list, (size_t)meetings->count, sizeof *meetings->list, compare);
   return STATUS_OK;
 }

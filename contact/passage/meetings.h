@@ -6,6 +6,8 @@
 #ifndef TETLAP_CONTACT_PASSAGE_MEETINGS_H
 #define TETLAP_CONTACT_PASSAGE_MEETINGS_H
 
+#include <stdbool.h>
+
 #include "contact/evaluation.h"
 
 typedef struct ContactMeeting {
@@ -33,11 +35,16 @@ typedef struct ContactMeetings {
 
 void contact_meetings_destroy(ContactMeetings *meetings); // also of a zeroed one
 
-// Of the evaluation's pairs, in place of what was there. `middles`: of each cell, the depth of the middle
-// there [m]; NULL: there are no depths. Volumes below `rounding` of the lesser cell's have no direction and
-// no depth. STATUS_MEMORY.
+// Marks the interfaces in which an element reaches at least this share of the way to the middle. `middles`:
+// of each cell, the depth of the middle there [m].
+void contact_meetings_mark(const ContactLayout *layout, const ContactEvaluation *evaluation,
+                           const double *middles, double least, bool *is_marked);
+
+// Of the pairs of marked interfaces, in place of what was there. `middles` NULL: there are no depths. Volumes
+// below `rounding` of the lesser cell's have no direction and no depth. STATUS_MEMORY.
 Status contact_meetings_find(ContactMeetings *meetings, const ContactLayout *layout,
-                             const ContactEvaluation *evaluation, const double *middles, double rounding);
+                             const ContactEvaluation *evaluation, const double *middles, double rounding,
+                             const bool *is_marked);
 
 // How many vertices the cell has in common with that of the part's cells with which it has most: 4, it is one
 // of them; also of two shapes.

@@ -33,6 +33,7 @@ void contact_passage_destroy(ContactPassage *passage) {
   memory_free(passage->next.entries);
   contact_meetings_destroy(&passage->meetings);
   memory_free(passage->middles);
+  memory_free(passage->is_followed);
   *passage = (ContactPassage){0};
 }
 
@@ -182,6 +183,24 @@ static void match(ContactPassage *passage, const ContactSystem *system) {
   leave_before(passage, system, &i, INT_MAX, INT_MAX);
 }
 
+// Of each interface: without depths, where an element reaches half as deep as one that may turn, or where one
+// may turn or has.
+static Status follow(ContactPassage *passage, const ContactLayout *layout,
+                     const ContactEvaluation *evaluation) {
+  size_t count = (size_t)layout->interface_count;
+  if (!memory_reserve((void **)&passage->is_followed, &passage->followed_capacity, count,
+                      sizeof *passage->is_followed))
+    return status_no_memory("elements that pass through bodies");
+  for (size_t i = 0; i < count; i++) passage->is_followed[i] = !passage->middles;
+  for (int i = 0; i < passage->now.count; i++) {
+    const ContactPassageEntry *entry = &passage->now.entries[i];
+    if (entry->is_turned || entry->is_deep) passage->is_followed[entry->interface] = true;
+  }
+  if (passage->middles)
+    contact_meetings_mark(layout, evaluation, passage->middles, REACH / 2, passage->is_followed);
+  return STATUS_OK;
+}
+
 static Status find_middles(ContactPassage *passage, const ContactLayout *layout) {
   if (passage->middles || !contact_layout_has_field(layout)) return STATUS_OK;
   return contact_middle_find(&layout->mesh, layout->def.tets, layout->rest, &passage->middles);
@@ -193,7 +212,9 @@ Status contact_passage_look(ContactPassage *passage, const ContactSystem *system
   passage->passed.elements = 0;
   passage->next.count = 0;
   TRY(find_middles(passage, layout));
-  TRY(contact_meetings_find(&passage->meetings, layout, evaluation, passage->middles, rounding()));
+  TRY(follow(passage, layout, evaluation));
+  TRY(contact_meetings_find(&passage->meetings, layout, evaluation, passage->middles, rounding(),
+                            passage->is_followed));
   TRY(reserve(&passage->next, (size_t)passage->meetings.count + (size_t)passage->now.count));
   match(passage, system);
   return STATUS_OK;

@@ -38,6 +38,9 @@
 //   covered  the volume that the two share, over that of the element or of the cells that it meets, whichever
 //            is less. It must be a thousandth; without a depth (`nodal`) a tenth, and reach is not asked.
 //
+// An interface is followed from where an element reaches half of that, and while one is deep inside or
+// turned. Where all touch more lightly the kept directions would be those of the present state.
+//
 // Below a millionth the centroid and the depth of an overlap are those of rounding: such a pair counts for
 // nothing, and such an element keeps no direction.
 #ifndef TETLAP_CONTACT_PASSAGE_PASSAGE_H
@@ -77,6 +80,8 @@ typedef struct ContactPassage {
   ContactPassageCount passed;   // what has left turned, from `now` to `next`
   ContactMeetings meetings;     // of `next`
   double *middles;              // of each cell: the depth of the middle there [m]; `field` only
+  bool *is_followed;            // scratch: of each interface
+  size_t followed_capacity;
 } ContactPassage;
 
 void contact_passage_destroy(ContactPassage *passage); // also of a zeroed one, which is a beginning

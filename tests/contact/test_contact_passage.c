@@ -128,6 +128,22 @@ START_TEST(what_enters_by_a_third_and_comes_back_has_not) {
 }
 END_TEST
 
+START_TEST(what_touches_lightly_is_not_followed) {
+  const double depths[] = {0.003, 0.06};
+  for (int k = 0; k < 2; k++) {
+    Scene scene = {.shape_count = 0};
+    blocks_add(&scene.blocks, &(BlockDef){.cell = {0.5, 0.5, 0.15}, .cells = {4, 4, 2}});
+    blocks_add(&scene.blocks,
+               &(BlockDef){.corner = {0.81, 0.77, 0.31}, .cell = {0.4, 0.4, 0.4}, .cells = {1, 1, 1}});
+    start(&scene);
+    move(&scene, 1, (const double[]){0, 0, -0.01 - depths[k]});
+    ck_assert_int_gt(evaluated_at(scene.system, 0, scene.blocks.x)->pair_count, 0);
+    ck_assert_int_eq(scene.passage.now.count > 0, k == 1);
+    destroy(&scene);
+  }
+}
+END_TEST
+
 // In through the upper side of a plate to the lower one, near which it stays for a while, in steps that leave
 // the middle out.
 static void cross_in_jumps(Scene *scene) {
@@ -401,6 +417,7 @@ END_TEST
 int main(void) {
   TCase *cases = tcase_create("contact passage");
   tcase_add_test(cases, what_crosses_a_plate_has_passed_in_any_unit);
+  tcase_add_test(cases, what_touches_lightly_is_not_followed);
   tcase_add_test(cases, what_enters_by_a_third_and_comes_back_has_not);
   tcase_add_test(cases, what_lies_between_two_layers_has_not_passed_either);
   tcase_add_test(cases, what_has_been_deep_inside_turns_however_long_it_stays_near_the_other_side);

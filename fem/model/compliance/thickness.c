@@ -13,6 +13,8 @@
 
 enum { MOST_SAMPLES = 400 };
 static const double SLENDER = 5, THICK = 3, MOSTLY = 0.5;
+// To either side of the median, of what makes a wall: without a jump where the half of an area becomes thin.
+static const double BAND = 0.1;
 
 // At one triangle.
 typedef struct Sample {
@@ -74,10 +76,24 @@ static void find_medians(Sample *samples, int count, double length, FemThickness
   thickness->layers = median(samples, kept)->layers;
 }
 
+// Of samples in order: the mean over the middle of the area. What differs from the median by rounding is the
+// median.
+static double typical(const Sample *samples, int count) {
+  const double middle = median(samples, count)->thickness;
+  double all = 0, passed = 0, sum = 0;
+  for (int i = 0; i < count; i++) all += samples[i].area;
+  for (int i = 0; i < count; i++) {
+    double from = fmax(passed, (0.5 - BAND) * all), to = fmin(passed += samples[i].area, (0.5 + BAND) * all);
+    double more = samples[i].thickness - middle;
+    if (to > from && fabs(more) > FEM_ROUNDING * middle) sum += (to - from) * more;
+  }
+  return middle + sum / (2 * BAND * all);
+}
+
 // Between a fifth and a third of the length the wall of what is hollow goes over into the height.
 static double wall_of(Sample *samples, int count, const FemExtent *extent) {
   qsort(samples, (size_t)count, sizeof *samples, by_thickness);
-  double thickness = median(samples, count)->thickness, least = extent->length / SLENDER;
+  double thickness = typical(samples, count), least = extent->length / SLENDER;
   double share = fmin(fmax((thickness - least) / (extent->length / THICK - least), 0), 1);
   if (!(thickness < (1 - FEM_ROUNDING) * extent->height) || share == 1) return extent->height;
   return thickness + share * (extent->height - thickness);
@@ -109,7 +125,6 @@ Status fem_thickness_find(const FemModel *model, int body, FemThickness *thickne
     memcpy(samples + count, samples, (size_t)count * sizeof *samples);
     find_medians(samples, count, extent.length, thickness);
     thickness->wall = wall_of(samples + count, count, &extent);
-    if (thickness->is_slender) thickness->wall = fmin(extent.height, thickness->thickness);
   }
   memory_free(samples);
   contact_surface_destroy(&surface);

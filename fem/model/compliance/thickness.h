@@ -12,8 +12,9 @@ typedef struct FemThickness {
   bool is_slender;
   double thickness; // median by area of where it is thin [m]; 0: it is not slender
   double layers;    // likewise, of the elements through it
-  double wall;      // what an impact has to go through: that thickness of what is slender, the height of what
-                    // is solid or has walls of a third of its length, in between what lies between [m]
+  double wall; // what an impact has to go through, a continuous function of the shape: the height of what
+               // is solid; the mean thickness of the middle fifth of the surface's area up to a fifth
+               // of the length, from a third on the height, in between what lies between [m]
 } FemThickness;
 
 // Of a body at rest; on a large surface of a few hundred triangles of it.

@@ -2,6 +2,7 @@
 // How many elements lie through the thickness of a body that bends, and what `tetlap check` says of it.
 #include "scene.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "fem/model/compliance/thickness.h"
@@ -57,6 +58,35 @@ START_TEST(a_block_is_not_slender_however_coarse) {
 }
 END_TEST
 
+// A cube of the edge 1 on a plate a twentieth as thick that goes on for this length.
+static double wall_of_cube_and_plate(double length) {
+  SceneRun run;
+  FemThickness thickness;
+  scene_open(&run, "free_fall",
+             (const char *const[]){"bodies.block.mesh={box: {size: [12, 1, 1], cells: [12, 4, 4]}}", NULL});
+  for (int v = 0; v < run.model.vertex_count; v++) {
+    double *x = run.model.rest + 3 * (size_t)v, column = round(x[0]);
+    x[0] = column < 6.5 ? column / 6 : 1.001 + (column - 7) / 5 * length;
+    if (column > 6.5) x[2] *= 0.05;
+  }
+  ck_assert_ok(fem_thickness_find(&run.model, 0, &thickness));
+  scene_close(&run);
+  return thickness.wall;
+}
+
+// From less to more than half of the surface on the plate.
+START_TEST(a_wall_has_no_jump_where_half_of_it_becomes_thin) {
+  double before = wall_of_cube_and_plate(1), whole = before;
+  for (int k = 1; k <= 60; k++) {
+    double wall = wall_of_cube_and_plate(1 + 0.1 * k);
+    ck_assert_double_lt(fabs(wall - before), 0.1 * whole);
+    before = wall;
+  }
+  ck_assert_near(before, 0.05, 1e-3);
+  ck_assert_double_gt(whole, 0.4);
+}
+END_TEST
+
 // What `tetlap check` prints of the scene with that plate; owned by the caller.
 static char *check_scene(const char *sets) {
   char command[1024], *text = NULL;
@@ -89,6 +119,7 @@ int main(void) {
   tcase_add_test(cases, a_beam_is_slender_across);
   tcase_add_test(cases, a_beam_is_as_slender_however_it_is_turned);
   tcase_add_test(cases, a_block_is_not_slender_however_coarse);
+  tcase_add_test(cases, a_wall_has_no_jump_where_half_of_it_becomes_thin);
   tcase_add_test(cases, check_says_what_to_do_about_it);
   return suite_run("thickness", cases, 30);
 }
