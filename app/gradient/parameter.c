@@ -23,6 +23,8 @@ static const Key body_keys[] = {
     {"material.young", FEM_PARAMETER_YOUNG, -1, -1, -1},
     {"material.poisson", FEM_PARAMETER_POISSON, -1, -1, -1},
     {"material.density", FEM_PARAMETER_DENSITY, -1, -1, -1},
+    {"material.plasticity.yield", FEM_PARAMETER_YIELD, -1, -1, -1},
+    {"material.plasticity.hardening", FEM_PARAMETER_HARDENING, -1, -1, -1},
     {"material.mooney", FEM_PARAMETER_MOONEY, -1, -1, -1},
     {"material.ogden.exponents[#]", FEM_PARAMETER_OGDEN_EXPONENT, -1, 0, -1},
     {"material.ogden.shares[#]", FEM_PARAMETER_OGDEN_SHARE, -1, 0, -1},
@@ -86,7 +88,8 @@ static const Key scene_keys[] = {
 // Keys by which there are derivatives, for messages.
 static const char keys_with_derivatives[] =
     "bodies.NAME.material.{young, poisson, density, mooney, ogden.exponents[K], ogden.shares[K], "
-    "fibre.modulus, fibre.direction[K], damping, viscosity, bulk_viscosity}, bodies.NAME.materials[N].{…} "
+    "fibre.modulus, fibre.direction[K], plasticity.{yield, hardening}, damping, viscosity, bulk_viscosity}, "
+    "bodies.NAME.materials[N].{…} "
     "the same; "
     "bodies.NAME.loads[N].{force[K], body_force[K], traction[K], pressure}; "
     "bodies.NAME.driven[N].{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}; "

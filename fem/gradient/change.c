@@ -286,9 +286,11 @@ static double *elastic_of(FemChange *change) {
   return change->wants_elastic ? &change->elastic : NULL;
 }
 
+// Plasticity's part is apart (fem/gradient/yielding.h).
 static Status change_material(FemChange *change, FemVaried *varied, const FemTangent *tangent,
                               const FemParameter *parameter, bool follows) {
   FemParameterKind constant = parameter->kind;
+  if (fem_parameter_is_of_yielding(parameter)) return STATUS_OK;
   bool is_elastic = constant == FEM_PARAMETER_YOUNG || constant == FEM_PARAMETER_POISSON;
   TRY(fem_varied_derive(varied, parameter->part, constant, parameter->row, tangent->state, change->force,
                         elastic_of(change)));

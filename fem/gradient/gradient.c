@@ -277,8 +277,15 @@ bool fem_gradient_has_following(const FemModel *model) {
   return false;
 }
 
+bool fem_gradient_yields(const FemModel *model) {
+  for (int p = 0; p < model->part_count; p++)
+    if (model->parts[p].material.yield_stress > 0) return true;
+  return false;
+}
+
 bool fem_gradient_is_path(const FemModel *model) {
-  return !model->scene->is_static || fem_gradient_has_friction(model) || fem_gradient_has_following(model);
+  return !model->scene->is_static || fem_gradient_has_friction(model) || fem_gradient_yields(model) ||
+         fem_gradient_has_following(model);
 }
 
 static Status check_contact(const FemModel *model) {
@@ -290,12 +297,6 @@ static Status check_contact(const FemModel *model) {
 }
 
 static Status check_body(const FemBodyDef *body) {
-  for (int i = 0; i <= body->part_count; i++)
-    if (fem_scene_material(body, i)->yield_stress > 0)
-      return status_fail(STATUS_INPUT,
-                         "body '%s' yields: plasticity remembers its history, which gradients do not go back "
-                         "through",
-                         body->name);
   for (int i = 0; i < body->load_count; i++)
     if (body->loads[i].kind == FEM_LOAD_TORQUE)
       return status_fail(
@@ -351,6 +352,9 @@ Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGrad
   if (fem_gradient_has_friction(system->model))
     return status_fail(STATUS_INPUT,
                        "friction remembers what has been: an equilibrium alone has no gradient");
+  if (fem_gradient_yields(system->model))
+    return status_fail(STATUS_INPUT,
+                       "plasticity remembers what has been: an equilibrium alone has no gradient");
   if (fem_gradient_has_following(system->model))
     return status_fail(STATUS_INPUT, "a pressure that follows its surface: the matrix is not symmetric");
   Adjoint adjoint;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Derivatives dg/dp at an equilibrium f(x, p) = 0 of a static scene without friction, for any number of
-// parameters by one solve for each g (the adjoint method):
+// Derivatives dg/dp at an equilibrium f(x, p) = 0 of a static scene without friction and plasticity, for any
+// number of parameters by one solve for each g (the adjoint method):
 //
 //   Jᵀ λ = ∂g/∂x,   dg/dp = ∂g/∂p + λ · ∂f/∂p + (∂g/∂x_c − J_cᵀ λ) · ∂x_c/∂p,   J = −∂f/∂x
 //
@@ -26,6 +26,7 @@ typedef struct FemGradient {
   double time;        // of the latest state that it was found at [s]
   double unbalanced;  // largest force on an unknown, as a share of the largest on a vertex
   long long switches; // of a path, of vertices between sticking and slipping from step to step
+  long long yields;   // the same of points that begin or cease to yield
   double replay_s;    // of a path, processor time of its replay, with segments that are done again [s]
   double *values;     // g, owned                                            (goal_count)
   double *residuals;  // |∂g/∂x − Jᵀ λ| / |∂g/∂x|, owned                      (goal_count)
@@ -37,9 +38,10 @@ typedef struct FemGradient {
 } FemGradient;
 
 bool fem_gradient_has_friction(const FemModel *model);
+bool fem_gradient_yields(const FemModel *model);        // plasticity remembers
 bool fem_gradient_has_following(const FemModel *model); // pressures that turn with their surface
-// Whether its derivatives are those of a path (fem/gradient/path/path.h): of a motion, with friction, and
-// with following pressures.
+// Whether its derivatives are those of a path (fem/gradient/path/path.h): of a motion, with friction or
+// plasticity, and with following pressures.
 bool fem_gradient_is_path(const FemModel *model);
 
 // STATUS_INPUT: what cannot be differentiated in this scene; the message says what and why.

@@ -23,6 +23,8 @@ static const struct {
     [FEM_PARAMETER_DAMPING] = {OF_MATERIAL, "s"},
     [FEM_PARAMETER_VISCOSITY] = {OF_MATERIAL, "Pa s"},
     [FEM_PARAMETER_BULK_VISCOSITY] = {OF_MATERIAL, "Pa s"},
+    [FEM_PARAMETER_YIELD] = {OF_MATERIAL, "Pa"},
+    [FEM_PARAMETER_HARDENING] = {OF_MATERIAL, "Pa"},
     [FEM_PARAMETER_DENSITY] = {OF_SCENE, "kg/m³"},
     [FEM_PARAMETER_GRAVITY] = {OF_SCENE, "m/s²"},
     [FEM_PARAMETER_LOAD] = {OF_SCENE, "N"},
@@ -51,6 +53,10 @@ bool fem_parameter_is_of_material(const FemParameter *parameter) {
 
 bool fem_parameter_is_of_motion(const FemParameter *parameter) {
   return kinds[parameter->kind].owner == OF_MOTION;
+}
+
+bool fem_parameter_is_of_yielding(const FemParameter *parameter) {
+  return parameter->kind == FEM_PARAMETER_YIELD || parameter->kind == FEM_PARAMETER_HARDENING;
 }
 
 bool fem_parameter_is_of_law(const FemParameter *parameter) {
@@ -219,6 +225,8 @@ static Status check_material(const FemModel *model, const FemParameter *paramete
       parameter->kind == FEM_PARAMETER_FIBRE || parameter->kind == FEM_PARAMETER_FIBRE_DIRECTION;
   if (is_of_fibres && !(material->fibre_stiffness > 0))
     return status_fail(STATUS_INPUT, "body '%s' has no fibres", body->name);
+  if (fem_parameter_is_of_yielding(parameter) && !(material->yield_stress > 0))
+    return status_fail(STATUS_INPUT, "body '%s' does not yield: it has no plasticity there", body->name);
   if (parameter->kind == FEM_PARAMETER_OGDEN_SHARE && material->exponents[parameter->row] == 0)
     return status_fail(STATUS_INPUT, "body '%s': the exponent of this share is 0", body->name);
   if (parameter->kind == FEM_PARAMETER_POISSON && is_at_largest_ratio(body, material))
@@ -355,6 +363,10 @@ double *fem_parameter_of_material(FemMaterial *material, FemParameterKind kind, 
     return &material->fibre_stiffness;
   case FEM_PARAMETER_FIBRE_DIRECTION:
     return &material->fibre_direction[row];
+  case FEM_PARAMETER_YIELD:
+    return &material->yield_stress;
+  case FEM_PARAMETER_HARDENING:
+    return &material->hardening;
   case FEM_PARAMETER_DAMPING:
     return &material->damping;
   case FEM_PARAMETER_VISCOSITY:
@@ -364,6 +376,14 @@ double *fem_parameter_of_material(FemMaterial *material, FemParameterKind kind, 
   default:
     return &material->density;
   }
+}
+
+FemLame fem_parameter_lame_rate(const FemMaterial *material, FemParameterKind kind) {
+  double young = material->young, nu = material->poisson;
+  FemLame lame = fem_material_lame(material);
+  if (kind == FEM_PARAMETER_YOUNG) return (FemLame){lame.lambda / young, lame.mu / young};
+  double above = 1 + nu, below = 1 - 2 * nu;
+  return (FemLame){young * (1 + 2 * nu * nu) / (above * above * below * below), -young / (2 * above * above)};
 }
 
 double *fem_parameter_of_motion(FemConstraintDef *motion, const FemParameter *parameter) {

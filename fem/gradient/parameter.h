@@ -16,6 +16,8 @@ typedef enum FemParameterKind {
   FEM_PARAMETER_DAMPING,           // β of a part, or (part −1) of all that have none of their own [s]
   FEM_PARAMETER_VISCOSITY,         // of a part [Pa s]
   FEM_PARAMETER_BULK_VISCOSITY,    // of a part [Pa s]
+  FEM_PARAMETER_YIELD,             // yield stress of a part [Pa]
+  FEM_PARAMETER_HARDENING,         // of a part [Pa]
   FEM_PARAMETER_DENSITY,           // of a part [kg/m³]
   FEM_PARAMETER_GRAVITY,           // a component [m/s²]
   FEM_PARAMETER_LOAD,              // loads[item] of a body: a component of its vector, or its pressure
@@ -48,6 +50,7 @@ typedef struct FemParameter {
 } FemParameter;
 
 bool fem_parameter_is_of_material(const FemParameter *parameter); // acts by forces within its part
+bool fem_parameter_is_of_yielding(const FemParameter *parameter); // of its part's plasticity
 bool fem_parameter_is_of_motion(const FemParameter *parameter);   // of a prescribed motion
 bool fem_parameter_is_of_law(const FemParameter *parameter);      // of a pressure law of contact
 
@@ -63,6 +66,9 @@ const char *fem_parameter_unit(const FemModel *model, const FemParameter *parame
 // that of a motion that is this parameter.
 double *fem_parameter_of_material(FemMaterial *material, FemParameterKind kind, int row);
 double *fem_parameter_of_motion(FemConstraintDef *motion, const FemParameter *parameter);
+
+// ∂λ/∂p, ∂μ/∂p by E and by ν.
+FemLame fem_parameter_lame_rate(const FemMaterial *material, FemParameterKind kind);
 
 // The prescribed motion that a parameter is of: driven[item] of its body, or its obstacle's.
 const FemConstraintDef *fem_parameter_motion(const FemModel *model, const FemParameter *parameter);

@@ -317,6 +317,7 @@ static Status resist(const FemTangent *tangent, double weight, Scratch *scratch,
   TRY(fem_tangent_pull(tangent, scratch->w, scratch->force));
   for (size_t i = 0; i < values_of(tangent); i++) slope[i] += weight * scratch->force[i];
   if (tangent->damping) TRY(fem_damping_pull(tangent->damping, scratch->w, -weight));
+  if (tangent->yielding) fem_yielding_pull(tangent->yielding, scratch->w, -weight);
   TRY(fem_tangent_pull_contact(tangent, CONTACT_ALL_INTERFACES, scratch->w, -weight));
   if (!tangent->friction) return STATUS_OK;
   return fem_friction_pull(tangent->friction, CONTACT_ALL_INTERFACES, scratch->w, -weight);
@@ -360,6 +361,9 @@ static Status evaluate_energies(const FemQuantity *quantity, const FemTangent *t
     TRY(evaluate_effect(tangent, &fem_effect_elasticity, energy, force));
     TRY(evaluate_effect(tangent, &fem_effect_volume, energy, force));
   }
+  void *plasticity = fem_system_effect(tangent->system, &fem_effect_plasticity); // is no force's
+  if (quantity->energies & FEM_QUANTITY_ELASTIC && plasticity)
+    TRY(fem_effect_plasticity.add_energy(plasticity, tangent->state, energy));
   if (quantity->energies & FEM_QUANTITY_GRAVITY)
     TRY(evaluate_effect(tangent, &fem_effect_gravity, energy, force));
   if (quantity->energies & FEM_QUANTITY_CONTACT)
@@ -378,6 +382,8 @@ static Status evaluate_energy(const FemQuantity *quantity, const FemTangent *tan
   *value = energy.elastic + energy.contact + energy.gravity;
   size_t of_bodies = 3 * (size_t)model->bodies[model->scene->body_count - 1].vertex_end;
   for (size_t i = 0; slope && !status && i < of_bodies; i++) slope[i] -= weight * force[i];
+  if (slope && !status && tangent->yielding && quantity->energies & FEM_QUANTITY_ELASTIC)
+    fem_yielding_pull_energy(tangent->yielding, weight);
   memory_free(force);
   return status;
 }

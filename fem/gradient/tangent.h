@@ -11,6 +11,7 @@
 #include "fem/gradient/contact/remainder.h"
 #include "fem/gradient/damping.h"
 #include "fem/gradient/friction.h"
+#include "fem/gradient/yielding.h"
 
 typedef struct FemTangent {
   FemSystem *system;      // borrowed
@@ -27,6 +28,7 @@ typedef struct FemTangent {
   void *stick;           // friction's effect, borrowed; NULL: the scene has none
   FemFriction *friction; // where derivatives by friction are added, borrowed; NULL: nowhere
   FemDamping *damping;   // the same by damping
+  FemYielding *yielding; // the same by plasticity
   FemAnswers *answers;   // the same by overlaps
 } FemTangent;
 

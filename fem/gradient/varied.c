@@ -35,15 +35,6 @@ void fem_varied_destroy(FemVaried *varied) {
   *varied = (FemVaried){0};
 }
 
-// ∂λ/∂p, ∂μ/∂p by E and by ν.
-static FemLame lame_rate(const FemMaterial *material, FemParameterKind constant) {
-  double young = material->young, nu = material->poisson;
-  FemLame lame = fem_material_lame(material);
-  if (constant == FEM_PARAMETER_YOUNG) return (FemLame){lame.lambda / young, lame.mu / young};
-  double above = 1 + nu, below = 1 - 2 * nu;
-  return (FemLame){young * (1 + 2 * nu * nu) / (above * above * below * below), -young / (2 * above * above)};
-}
-
 static FemLame lame_along(FemLame from, double step, FemLame rate) {
   return (FemLame){from.lambda + step * rate.lambda, from.mu + step * rate.mu};
 }
@@ -51,7 +42,7 @@ static FemLame lame_along(FemLame from, double step, FemLame rate) {
 // λ, μ and what elements keep of λ, along the tangent in E or ν.
 static void vary_lame(FemModelPart *to, const FemModelPart *from, double ratio, FemParameterKind constant,
                       double step) {
-  FemLame rate = lame_rate(&from->material, constant), local_rate = rate;
+  FemLame rate = fem_parameter_lame_rate(&from->material, constant), local_rate = rate;
   FemLame lame = fem_material_lame(&from->material), local = fem_material_lame(&from->local);
   if (lame.lambda > ratio * lame.mu) local_rate.lambda = ratio * rate.mu;
   to->material = fem_material_with_lame(&from->material, lame_along(lame, step, rate));

@@ -38,7 +38,8 @@ static const AppOption option_table[] = {
     {"at", 0, "TIME", "Take quantities at this time [s] that name none (default: the run's end)", 1,
      CLI_POSITIVE, CLI_TO(Options, words.at)},
     {"memory", 0, "MB",
-     "What the replay of a motion, or of a scene with friction, may keep; where it were more, segments are "
+     "What the replay of a motion, or of a scene with friction or plasticity, may keep; where it were more, "
+     "segments are "
      "done twice (default: what there is)",
      1, CLI_POSITIVE, CLI_TO(Options, words.most_megabytes)},
     {"weights", 'w', "FILE",
@@ -109,17 +110,22 @@ static AppTablePart part_of(const Answer *answer, const Row *rows) {
   return (AppTablePart){columns, count, rows, sizeof *rows};
 }
 
-// How many vertices began or ended to slip.
+// How many vertices began or ended to slip, and points to yield.
 static const char *switches_of(const FemGradient *gradient, char *text, size_t size) {
-  if (gradient->switches == 0) return "";
-  snprintf(text, size, ", %lld switches between stick and slip", gradient->switches);
+  int length = 0;
+  *text = 0;
+  if (gradient->switches > 0)
+    length = snprintf(text, size, ", %lld switches between stick and slip", gradient->switches);
+  if (gradient->yields > 0)
+    snprintf(text + length, size - (size_t)length, ", %lld switches between elastic and yielding",
+             gradient->yields);
   return text;
 }
 
 static void print_head(const Answer *answer, int g) {
   const FemGradient *gradient = &answer->found.gradient;
   const char *word = answer->options->words.of[g];
-  char text[64];
+  char text[128];
   int count = answer->found.steps.count - 1;
   printf("g = %s = %.10g %s; residual of the adjoint %.1e, of the forces %.1e", word, gradient->values[g],
          app_gradient_unit(&answer->found.goals[g], word), gradient->residuals[g], gradient->unbalanced);
@@ -218,6 +224,7 @@ static Status print_json(const Answer *answer) {
   record_text(record, "contact_stiffness", app_gradient_stiffness(answer->model, words));
   if (found->steps.count > 0) record_integer(record, "steps", found->steps.count - 1);
   if (found->steps.count > 0) record_integer(record, "stick_slip_switches", found->gradient.switches);
+  if (found->steps.count > 0) record_integer(record, "yield_switches", found->gradient.yields);
   FemReplayPlan plan = fem_replay_steps_plan(&found->steps);
   if (found->steps.count > 0) record_integer(record, "replay_bytes", (long long)plan.bytes);
   if (found->steps.count > 0) record_integer(record, "replay_segments", plan.segment_count);

@@ -3,12 +3,12 @@
 // so that rotations may be large; strains should stay within some percent. Elasticity gives C : E; here is
 // the rest,
 //
-//   S_p = −2μ E_p,   yield: q = √(3/2) |s| ≤ σ_y + H α,   s = 2μ dev(E − E_p)
+//   S_p = −2μ E_p
 //
-// by radial return (Simo and Hughes, Computational Inelasticity, 3.3) from the history at the last accepted
-// state: Δα = (q_trial − σ_y − H α)/(3μ + H), ΔE_p = √(3/2) Δα s/|s|. It is the gradient of an incremental
-// energy, ½ (E − E_p):C:(E − E_p) + ½ H α² + σ_y α, whose last part is dissipated. E_p has no trace, so
-// `nodal` volume changes are not concerned, nor mean ones. Each quadrature point has a history of its own.
+// by radial return from the history at the last accepted state (fem/material/plastic.h). It is the gradient
+// of an incremental energy, ½ (E − E_p):C:(E − E_p) + ½ H α² + σ_y α, whose last part is dissipated. E_p has
+// no trace, so `nodal` volume changes are not concerned, nor mean ones. Each quadrature point has a history
+// of its own.
 #include "fem/effect/elements/plasticity.h"
 
 #include <math.h>
@@ -17,12 +17,6 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/system.h"
-
-// What a quadrature point remembers; numbers only, as a history keeps them.
-typedef struct Plastic {
-  double strain[9]; // E_p
-  double alpha;     // accumulated plastic strain
-} Plastic;
 
 // A quadrature point of a plastic part.
 typedef struct Site {
@@ -37,16 +31,9 @@ typedef struct Plasticity {
   int element_count;
   Site *sites; //                                          (site_count)
   int site_count;
-  int history; // place of its history, Plastic by Plastic        (site_count)
+  int history; // place of its history, one FemPlastic after the other        (site_count)
   int *place;  // of a tetrahedron's first site, −1: not plastic   (model->tet_count)
 } Plasticity;
-
-// A return from the history to E: the new plastic state, and its derivative ∂E_p/∂E = along n ⊗ n + across
-// (I_dev − n ⊗ n).
-typedef struct Return {
-  Plastic plastic;
-  double n[9], along, across;
-} Return;
 
 static bool yields(const FemMaterial *material) {
   return material->yield_stress > 0;
@@ -146,37 +133,17 @@ static void find_strain(const Site *site, const double *positions, double F[9], 
     }
 }
 
-static Return return_to(const FemMaterial *material, const Plastic *history, const double E[9]) {
-  Return r = {.plastic = *history};
-  double mu = fem_material_lame(material).mu, trace = (E[0] + E[4] + E[8]) / 3, square = 0;
-  for (int k = 0; k < 9; k++) {
-    r.n[k] = 2 * mu * (E[k] - history->strain[k] - (k % 4 == 0 ? trace : 0));
-    square += r.n[k] * r.n[k];
-  }
-  double size = sqrt(square),
-         beyond = sqrt(1.5) * size - material->yield_stress - material->hardening * history->alpha;
-  if (!(beyond > 0)) return r;
-  double growth = beyond / (3 * mu + material->hardening);
-  for (int k = 0; k < 9; k++) {
-    r.n[k] /= size;
-    r.plastic.strain[k] += sqrt(1.5) * growth * r.n[k];
-  }
-  r.plastic.alpha += growth;
-  r.along = 3 * mu / (3 * mu + material->hardening);
-  r.across = sqrt(1.5) * growth * 2 * mu / size;
-  return r;
+static const FemPlastic *history_of(const Plasticity *plasticity, const FemState *accepted) {
+  return (const FemPlastic *)accepted->histories[plasticity->history].values;
 }
 
-static const Plastic *history_of(const Plasticity *plasticity, const FemState *accepted) {
-  return (const Plastic *)accepted->histories[plasticity->history].values;
-}
-
-static Return evaluate(const Plasticity *plasticity, int i, const FemState *state, double F[9], double E[9]) {
+static FemPlasticReturn evaluate(const Plasticity *plasticity, int i, const FemState *state, double F[9],
+                                 double E[9]) {
   find_strain(&plasticity->sites[i], state->positions, F, E);
-  return return_to(material_of(plasticity, i), &history_of(plasticity, state->last)[i], E);
+  return fem_plastic_return(material_of(plasticity, i), &history_of(plasticity, state->last)[i], E);
 }
 
-enum { PLASTIC_SIZE = sizeof(Plastic) / sizeof(double) };
+enum { PLASTIC_SIZE = sizeof(FemPlastic) / sizeof(double) };
 
 static Status connect(void *self, const FemSystem *system) {
   ((Plasticity *)self)->history = fem_system_place(system, &fem_effect_plasticity);
@@ -196,13 +163,13 @@ static Status advance(void *self, const FemState *state, FemEffectHistory *next)
   TRY(fem_effect_history_resize(next, PLASTIC_SIZE * (size_t)plasticity->site_count));
   for (int i = 0; i < plasticity->site_count; i++) {
     double F[9], E[9];
-    ((Plastic *)next->values)[i] = evaluate(plasticity, i, state, F, E).plastic;
+    ((FemPlastic *)next->values)[i] = evaluate(plasticity, i, state, F, E).plastic;
   }
   return STATUS_OK;
 }
 
 // P_p = −2μ F E_p.
-static void find_stress(double mu, const double F[9], const Plastic *plastic, double P[9]) {
+static void find_stress(double mu, const double F[9], const FemPlastic *plastic, double P[9]) {
   const double *S = plastic->strain;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
@@ -214,7 +181,7 @@ static Status add_force(void *self, const FemState *state, double *force) {
   for (int i = 0; i < plasticity->site_count; i++) {
     const Site *site = &plasticity->sites[i];
     double F[9], E[9], P[9], own[3 * FEM_QUADRATIC_NODES] = {0};
-    Return r = evaluate(plasticity, i, state, F, E);
+    FemPlasticReturn r = evaluate(plasticity, i, state, F, E);
     find_stress(fem_material_lame(material_of(plasticity, i)).mu, F, &r.plastic, P);
     fem_point_add_force(&site->point, P, own);
     for (int a = 0; a < site->point.node_count; a++)
@@ -224,7 +191,7 @@ static Status add_force(void *self, const FemState *state, double *force) {
 }
 
 // ∂P_p,ij/∂F_kl = δ_ik S_p,jl + F_im A_mjnl F_kn, A = −2μ ∂E_p/∂E.
-static void find_tangent(double mu, const double F[9], const Return *r, double dP[81]) {
+static void find_tangent(double mu, const double F[9], const FemPlasticReturn *r, double dP[81]) {
   double A[81], half[81];
   for (int p = 0; p < 9; p++)
     for (int q = 0; q < 9; q++) {
@@ -256,7 +223,7 @@ static Status add_jacobian(void *self, const FemState *state, double stiffness_s
     const Site *site = &plasticity->sites[i];
     int nodes = site->point.node_count;
     double F[9], E[9], dP[81], dense[9 * FEM_QUADRATIC_NODES * FEM_QUADRATIC_NODES] = {0};
-    Return r = evaluate(plasticity, i, state, F, E);
+    FemPlasticReturn r = evaluate(plasticity, i, state, F, E);
     find_tangent(fem_material_lame(material_of(plasticity, i)).mu, F, &r, dP);
     fem_point_add_tangent(&site->point, dP, dense);
     fem_point_mirror(nodes, dense);
@@ -271,7 +238,7 @@ static Status add_energy(void *self, const FemState *state, FemEnergy *energy) {
   for (int i = 0; i < plasticity->site_count; i++) {
     const FemMaterial *material = material_of(plasticity, i);
     double F[9], E[9], product = 0, volume = plasticity->sites[i].point.weight;
-    Plastic plastic = evaluate(plasticity, i, state, F, E).plastic;
+    FemPlastic plastic = evaluate(plasticity, i, state, F, E).plastic;
     for (int k = 0; k < 9; k++) product += plastic.strain[k] * (plastic.strain[k] - 2 * E[k]);
     energy->elastic += volume * (fem_material_lame(material).mu * product +
                                  0.5 * material->hardening * plastic.alpha * plastic.alpha);
@@ -290,7 +257,7 @@ static Status check_history(const void *self, const double *values, size_t count
 
 static void report(void *self, const FemState *state, Record *counters) {
   const Plasticity *plasticity = self;
-  const Plastic *history = history_of(plasticity, state);
+  const FemPlastic *history = history_of(plasticity, state);
   double most = 0;
   int yielded = 0, last = -1;
   for (int i = 0; i < plasticity->site_count; i++) {
@@ -318,10 +285,121 @@ void fem_effect_plasticity_add_stress(const void *self, int tet, const FemState 
   }
   for (int i = begin; i < end; i++) {
     double F[9], E[9], P[9], one[6];
-    Plastic plastic = evaluate(plasticity, i, state, F, E).plastic;
+    FemPlastic plastic = evaluate(plasticity, i, state, F, E).plastic;
     find_stress(fem_material_lame(material_of(plasticity, i)).mu, F, &plastic, P);
     fem_material_cauchy(FEM_MATERIAL_STVK, F, P, one);
     for (int s = 0; s < 6; s++) stress[s] += one[s] / (end - begin);
+  }
+}
+
+// ---- Derivatives, backwards.
+
+int fem_effect_plasticity_place(const void *self) {
+  return ((const Plasticity *)self)->history;
+}
+
+int fem_effect_plasticity_count(const void *self) {
+  return ((const Plasticity *)self)->site_count;
+}
+
+// A point at a state, and what it gives: g's derivatives by F, and by those of its return.
+typedef struct Pull {
+  const Site *site;
+  const FemMaterial *material;
+  double F[9], E[9], mu;
+  FemPlasticReturn r;
+  FemPlastic by;        // g's, by the new plastic state
+  double strain[9];     // by E
+  FemPlasticSlope *own; // by the constants of its part
+} Pull;
+
+static Pull begin_pull(const Plasticity *plasticity, int i, const FemState *state,
+                       const FemPlasticitySlope *slope) {
+  Pull pull = {.site = &plasticity->sites[i], .material = material_of(plasticity, i)};
+  pull.r = evaluate(plasticity, i, state, pull.F, pull.E);
+  pull.mu = fem_material_lame(pull.material).mu;
+  pull.own = &slope->parts[plasticity->model->tet_part[pull.site->tet]];
+  return pull;
+}
+
+// What is by the new plastic state goes on to what it was found from.
+static void end_pull(const Plasticity *plasticity, int i, const FemState *state, Pull *pull,
+                     const FemPlasticitySlope *slope) {
+  FemPlasticSlope own = {0};
+  fem_plastic_pull(pull->material, &history_of(plasticity, state->last)[i], &pull->r, &pull->by, &own);
+  for (int k = 0; k < 9; k++) {
+    pull->strain[k] += own.strain[k];
+    slope->before[i].strain[k] += own.history.strain[k];
+  }
+  slope->before[i].alpha += own.history.alpha;
+  pull->own->mu += own.mu;
+  pull->own->yield += own.yield;
+  pull->own->hardening += own.hardening;
+}
+
+// λ · f = 2μ V (Fᵀ Λ) : E_p with Λ = Σ λ_a ⊗ ∇N_a.
+static void add_forces(Pull *pull, const double *forces) {
+  double own[3 * FEM_QUADRATIC_NODES], L[9], volume = pull->site->point.weight;
+  for (int k = 0; k < pull->site->point.node_count; k++)
+    memcpy(own + 3 * k, forces + 3 * (size_t)pull->site->nodes[k], 3 * sizeof *own);
+  fem_point_deformation(&pull->site->point, own, L);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      double product = 0;
+      for (int m = 0; m < 3; m++)
+        product += 0.5 * (pull->F[3 * m + i] * L[3 * m + j] + pull->F[3 * m + j] * L[3 * m + i]);
+      pull->by.strain[3 * i + j] += 2 * pull->mu * volume * product;
+      pull->own->mu += 2 * volume * product * pull->r.plastic.strain[3 * i + j];
+    }
+}
+
+void fem_effect_plasticity_pull_forces(const void *self, const FemState *state, const double *forces,
+                                       const FemPlasticitySlope *slope) {
+  const Plasticity *plasticity = self;
+  for (int i = 0; i < plasticity->site_count; i++) {
+    Pull pull = begin_pull(plasticity, i, state, slope);
+    add_forces(&pull, forces);
+    end_pull(plasticity, i, state, &pull, slope);
+  }
+}
+
+// Of V (μ E_p : (E_p − 2 E) + ½ H α²).
+static void add_elastic(Pull *pull, double energy) {
+  const FemPlastic *plastic = &pull->r.plastic;
+  double share = energy * pull->site->point.weight;
+  for (int k = 0; k < 9; k++) {
+    pull->by.strain[k] += share * 2 * pull->mu * (plastic->strain[k] - pull->E[k]);
+    pull->strain[k] -= share * 2 * pull->mu * plastic->strain[k];
+    pull->own->mu += share * plastic->strain[k] * (plastic->strain[k] - 2 * pull->E[k]);
+  }
+  pull->by.alpha += share * pull->material->hardening * plastic->alpha;
+  pull->own->hardening += share * 0.5 * plastic->alpha * plastic->alpha;
+}
+
+// By positions through E, whose derivative is symmetric: ∂g/∂F = F ∂g/∂E.
+static void add_positions(const Pull *pull, double *now) {
+  const FemPoint *point = &pull->site->point;
+  double P[9], own[3 * FEM_QUADRATIC_NODES] = {0};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      P[3 * i + j] = 0;
+      for (int m = 0; m < 3; m++)
+        P[3 * i + j] -= pull->F[3 * i + m] * pull->strain[3 * m + j] / point->weight;
+    }
+  fem_point_add_force(point, P, own);
+  for (int a = 0; a < point->node_count; a++)
+    vec3_accumulate(now + 3 * (size_t)pull->site->nodes[a], vec3_at(own + 3 * a));
+}
+
+void fem_effect_plasticity_pull_history(const void *self, const FemState *state, double energy,
+                                        const FemPlastic *after, const FemPlasticitySlope *slope) {
+  const Plasticity *plasticity = self;
+  for (int i = 0; i < plasticity->site_count; i++) {
+    Pull pull = begin_pull(plasticity, i, state, slope);
+    if (after) pull.by = after[i];
+    if (energy != 0) add_elastic(&pull, energy);
+    end_pull(plasticity, i, state, &pull, slope);
+    add_positions(&pull, slope->now);
   }
 }
 

@@ -67,8 +67,14 @@ static Status check_friction(const FemModel *model, const FemGradientDef *def) {
   return STATUS_OK;
 }
 
+static Status check_yielding(const FemModel *model) {
+  if (!fem_gradient_yields(model) || !model->start) return STATUS_OK;
+  return status_fail(STATUS_INPUT, "start: with plasticity a run that goes on from another has no gradient");
+}
+
 Status fem_path_check(const FemModel *model, const FemGradientDef *def) {
   if (!model->scene->is_static) TRY(check_motion(model, def));
+  TRY(check_yielding(model));
   return check_friction(model, def);
 }
 

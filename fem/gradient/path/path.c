@@ -55,7 +55,8 @@ static Status add_step(FemSweep *sweep, int p, FemGradient *gradient) {
     for (size_t i = 0; i < fem_sweep_value_count(sweep); i++)
       sum += sweep->lambda[i] * change->force[i] + fem_sweep_slope(sweep, g, i) * change->motion[i] +
              fem_sweep_rate(sweep, g, i) * change->speed[i];
-    gradient->derivatives[g * def->parameter_count + p] += sum + change_friction(sweep, change, goal);
+    sum += change_friction(sweep, change, goal) + fem_yielding_change(&goal->yielding, &def->parameters[p]);
+    gradient->derivatives[g * def->parameter_count + p] += sum;
   }
   return STATUS_OK;
 }
@@ -93,6 +94,7 @@ static Status evaluate_goals(FemSweep *sweep, FemGradient *gradient) {
   for (int g = 0; g < sweep->def->goal_count; g++) {
     sweep->tangent.friction = fem_sweep_has_friction(sweep) ? &sweep->goals[g].friction : NULL;
     sweep->tangent.damping = &sweep->goals[g].damping;
+    sweep->tangent.yielding = &sweep->goals[g].yielding;
     sweep->tangent.answers = gradient->weights ? &sweep->goals[g].answers : NULL;
     TRY(fem_goal_evaluate(&sweep->def->goals[g], &sweep->tangent, &gradient->values[g],
                           sweep->slope + fem_sweep_value_count(sweep) * (size_t)g, factors));
@@ -100,6 +102,7 @@ static Status evaluate_goals(FemSweep *sweep, FemGradient *gradient) {
   }
   sweep->tangent.friction = NULL;
   sweep->tangent.damping = NULL;
+  sweep->tangent.yielding = NULL;
   sweep->tangent.answers = NULL;
   return STATUS_OK;
 }
@@ -139,8 +142,11 @@ static Status begin_friction(FemSweep *sweep) {
 }
 
 static Status go_back_with(FemSweep *sweep, FemGradient *gradient) {
-  for (int g = 0; g < sweep->def->goal_count; g++)
+  for (int g = 0; g < sweep->def->goal_count; g++) {
     fem_damping_begin(&sweep->goals[g].damping, &sweep->replay.state);
+    fem_yielding_begin(&sweep->goals[g].yielding, &sweep->replay.state);
+    if (sweep->step > 0) fem_yielding_pull_history(&sweep->goals[g].yielding);
+  }
   TRY(begin_answers(sweep, gradient));
   TRY(begin_friction(sweep));
   TRY(evaluate_goals(sweep, gradient));
@@ -198,6 +204,7 @@ static Status replay_and_return(FemSweep *sweep, FemGradient *gradient) {
   TRY(fem_replay_go(replay));
   gradient->unbalanced = replay->worst;
   gradient->switches = replay->switches;
+  gradient->yields = replay->yields;
   int first = fem_sweep_has_friction(sweep) ? 0 : 1;
   for (int k = replay->steps->count - 1; k >= first; k--)
     TRY(fem_replay_end(replay, k, go_back_to(sweep, k, gradient)));

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/effect/contact/stick.h"
+#include "fem/effect/elements/plasticity.h"
 #include "fem/gradient/gradient.h"
 
 enum { MAX_ITERATIONS = 30, STICKS = 1, SLIPS = 2 };
@@ -86,6 +87,13 @@ static Status create_slips(FemReplay *replay) {
   return replay->slips ? STATUS_OK : status_no_memory("the replay of a run");
 }
 
+static Status create_yields(FemReplay *replay) {
+  replay->plastic = fem_system_effect(&replay->system, &fem_effect_plasticity);
+  if (!replay->plastic) return STATUS_OK;
+  replay->yielded = memory_zeroed((size_t)fem_effect_plasticity_count(replay->plastic), 1);
+  return replay->yielded ? STATUS_OK : status_no_memory("the replay of a run");
+}
+
 static Status create_krylov(FemReplay *replay) {
   replay->is_near = !replay->stick && !fem_system_effect(&replay->system, &fem_effect_damping) &&
                     !fem_gradient_has_following(replay->system.model);
@@ -129,6 +137,7 @@ Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemRepl
   TRY(fem_system_create_state(&replay->system, &replay->before));
   TRY(fem_system_create_state(&replay->system, &replay->state));
   TRY(create_slips(replay));
+  TRY(create_yields(replay));
   TRY(create_krylov(replay));
   TRY(fem_mixing_create(&replay->mixing, replay->n));
   return fem_equilibrium_create(&replay->equilibrium, &replay->system, &replay->state, &fem_solver_cholmod);
@@ -144,9 +153,9 @@ void fem_replay_destroy(FemReplay *replay) {
   fem_state_destroy(&replay->before);
   fem_state_destroy(&replay->state);
   fem_system_destroy(&replay->system);
-  void *arrays[] = {replay->u,     replay->saved, replay->v,      replay->force,
-                    replay->step,  replay->ahead, replay->aside,  replay->histories,
-                    replay->slips, replay->rate,  replay->weights};
+  void *arrays[] = {replay->u,     replay->saved, replay->v,       replay->force,
+                    replay->step,  replay->ahead, replay->aside,   replay->histories,
+                    replay->slips, replay->rate,  replay->weights, replay->yielded};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
   *replay = (FemReplay){0};
 }
@@ -278,6 +287,19 @@ static Status count_switches(FemReplay *replay) {
   return STATUS_OK;
 }
 
+// The same of points that yield and did not in the step before.
+static void count_yields(FemReplay *replay, int k) {
+  if (!replay->plastic) return;
+  int place = fem_effect_plasticity_place(replay->plastic);
+  const FemPlastic *was = (const FemPlastic *)fem_replay_histories(replay, k - 1)[place].values;
+  const FemPlastic *is = (const FemPlastic *)fem_replay_histories(replay, k)[place].values;
+  for (int i = 0; i < fem_effect_plasticity_count(replay->plastic); i++) {
+    bool yields = is[i].alpha > was[i].alpha;
+    replay->yields += k > 1 && yields != replay->yielded[i];
+    replay->yielded[i] = yields;
+  }
+}
+
 // In arrays that are not larger than what they hold.
 static Status keep_histories(FemReplay *replay, int k) {
   FemEffectHistory *kept = fem_replay_histories(replay, k);
@@ -330,7 +352,9 @@ static Status step(FemReplay *replay, int k, bool is_again) {
   fem_system_scatter(&replay->system, t[k], u_of(replay, k), v_of(replay, k), &replay->state);
   if (!is_again) TRY(count_switches(replay));
   TRY(fem_system_accept(&replay->system, &replay->state, k + 1 < replay->steps->count ? t[k + 1] - t[k] : 0));
-  return keep_histories(replay, k);
+  TRY(keep_histories(replay, k));
+  if (!is_again) count_yields(replay, k);
+  return STATUS_OK;
 }
 
 // A run that goes on from another begins at that one's end.

@@ -32,6 +32,7 @@ typedef struct FemReplay {
   double *weights; // of its norm, 1                            (n)
   bool has_factor; // which serves the next step, too
   void *stick;     // friction's effect, borrowed; NULL: none
+  void *plastic;   // that of plasticity, borrowed; NULL: none
   bool is_near;    // the matrix is near J: no friction, damping, following pressure
   int n;           // unknowns
   FemReplayPlan plan;
@@ -42,10 +43,12 @@ typedef struct FemReplay {
   double *ahead, *aside;       // scratch, where the matrix is not exact    (n)
   double *rate;                // the same, velocities                      (n)
   FemEffectHistory *histories; // of segments' ends, of steps between (segments + length, effect_count)
+  unsigned char *yielded;      // whether a point yielded in the last step    (points of plasticity)
   unsigned char *slips;        // 0: apart, 1: sticks, 2: slips             (interfaces, contact vertices)
   double spent_s;              // processor time of its steps, also where they are done again [s]
   double worst;                // what is left in a step, as a share of the largest force
   long long switches;          // between sticking and slipping, of vertices from step to step
+  long long yields;            // points that began or ceased to yield from step to step
   double c;                    // of the step that GMRES works on
   const double *middle, *speed; // its u, its v; borrowed
 } FemReplay;

@@ -34,6 +34,7 @@ static void destroy_goal(FemSweepGoal *goal) {
   memory_free(goal->moves);
   fem_friction_destroy(&goal->friction);
   fem_damping_destroy(&goal->damping);
+  fem_yielding_destroy(&goal->yielding);
   fem_answers_destroy(&goal->answers);
 }
 
@@ -56,6 +57,7 @@ static Status create_goal(const FemSweep *sweep, FemSweepGoal *goal) {
   goal->alpha = memory_zeroed(3 * n, sizeof(double));
   if (!goal->beta || !goal->alpha) return status_no_memory("the adjoint of a run");
   TRY(fem_damping_create(&goal->damping, &sweep->replay.system));
+  TRY(fem_yielding_create(&goal->yielding, &sweep->replay.system));
   if (!fem_sweep_has_friction(sweep)) return STATUS_OK;
   TRY(fem_friction_create(&goal->friction, &sweep->replay.system));
   goal->places = memory_zeroed(fem_sweep_value_count(sweep), sizeof(double));
@@ -172,6 +174,7 @@ double fem_sweep_slope(const FemSweep *sweep, int g, size_t dof) {
   const FemSweepGoal *goal = &sweep->goals[g];
   double slope = sweep->slope[fem_sweep_value_count(sweep) * (size_t)g + dof];
   if (is_damped(sweep)) slope += goal->damping.now[dof];
+  if (goal->yielding.effect) slope += goal->yielding.now[dof];
   return fem_sweep_has_friction(sweep) ? slope + goal->places[dof] + goal->friction.now[dof] : slope;
 }
 
@@ -179,10 +182,11 @@ double fem_sweep_rate(const FemSweep *sweep, int g, size_t dof) {
   return is_damped(sweep) ? sweep->goals[g].damping.rate[dof] : 0;
 }
 
-// What friction and damping have by λ = −β.
+// What friction, damping and plasticity have by λ = −β.
 static Status pull_step(FemSweep *sweep, FemSweepGoal *goal, const double *beta) {
   fem_sweep_spread(sweep, beta, -1);
   TRY(fem_damping_pull(&goal->damping, sweep->lambda, 1));
+  fem_yielding_pull(&goal->yielding, sweep->lambda, 1);
   if (!fem_sweep_has_friction(sweep)) return STATUS_OK;
   return fem_friction_pull(&goal->friction, CONTACT_ALL_INTERFACES, sweep->lambda, 1);
 }

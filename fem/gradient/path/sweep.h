@@ -18,6 +18,7 @@ typedef struct FemSweepGoal {
   // At this step:
   FemFriction friction; // only where the scene has friction
   FemDamping damping;
+  FemYielding yielding;
   FemAnswers answers; // only where derivatives by weights are wanted
 } FemSweepGoal;
 

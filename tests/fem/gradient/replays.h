@@ -17,6 +17,7 @@ typedef struct Asked {
   bool by_weights;
   int least_steps;          // of the run; 0: 20
   long long least_switches; // between sticking and slipping
+  long long least_yields;   // between elastic and yielding
 } Asked;
 
 static inline Status record(void *observer, const FemRunProgress *progress) {
@@ -93,6 +94,7 @@ static inline void check_against_replays(const Asked *asked) {
   replay(asked, &steps, NULL, true, &answer);
   ck_assert_double_le(answer.gradient.unbalanced, 1e-9);
   ck_assert_int_ge(answer.gradient.switches, asked->least_switches);
+  ck_assert_int_ge(answer.gradient.yields, asked->least_yields);
   for (int p = 0; p < answer.parameter_count; p++) {
     double shares[MOST], size = answer.values[p] != 0 ? fabs(answer.values[p]) : OF_ZERO;
     differ(asked, &steps, asked->by[p], answer.values[p], size, shares);

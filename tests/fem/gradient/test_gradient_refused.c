@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What has no gradient in a static scene, or one that is 0.
 #include "equilibria.h"
+#include "fem/gradient/path/check.h"
 
 // ---- What does not act.
 
@@ -72,7 +73,6 @@ static void refuse(const char *time, const char *material, const char *keys, con
 #define NU "poisson: 0.3"
 #define YOUNG "bodies.block.material.young"
 START_TEST(what_has_no_gradient_is_refused_by_name) {
-  refuse(STATIC, NU ", law: stvk, plasticity: {yield: 1e3}", "", NULL, YOUNG, "yields");
   refuse(STATIC, NU, "    loads: [{group: z_max, torque: [0, 0, 1]}]\n", NULL, YOUNG, "loads[0] is a torque");
   refuse(STATIC, NU, "", "stiffness: 1e6, overlap: tpn", YOUNG, "'tpn' has no derivatives of its centroid");
   refuse(STATIC, NU, "", "overlap: geo, law: 1e6*d", YOUNG, "pressure law");
@@ -98,7 +98,20 @@ static void refuse_to_find(const char *name, const char *why) {
 START_TEST(an_equilibrium_alone_is_refused_where_it_does_not_tell) {
   refuse_to_find("gradient_motion", "the scene moves");
   refuse_to_find("gradient_rub", "friction remembers");
+  refuse_to_find("gradient_yield", "remembers what has been");
   refuse_to_find("gradient_inflate", "the matrix is not symmetric");
+}
+END_TEST
+
+START_TEST(what_yields_and_goes_on_from_another_run_is_refused) {
+  SceneRun scene;
+  FemStart start = {0};
+  scene_open(&scene, "gradient_yield", NULL);
+  scene.model.start = &start;
+  ck_assert_int_eq(fem_path_check(&scene.model, &(FemGradientDef){0}), STATUS_INPUT);
+  ck_assert_msg(strstr(status_message(), "start: with plasticity") != NULL, "%s", status_message());
+  scene.model.start = NULL;
+  scene_close(&scene);
 }
 END_TEST
 
@@ -110,6 +123,7 @@ START_TEST(parameters_without_a_derivative_are_refused_by_name) {
   refuse(STATIC, NU, "", "stiffness: 1e6", "contact.pairs[0].stiffness",
          "contact.pairs[0].stiffness: contact.pairs has 0 entries, no contact.pairs[0]");
   refuse(STATIC, NU, "", NULL, "bodies.block.material.fibre.modulus", "no fibres");
+  refuse(STATIC, NU, "", NULL, "bodies.block.material.plasticity.yield", "body 'block' does not yield");
   refuse(STATIC, NU, "", NULL, "bodies.block.material.fibre.direction[2]", "no fibres");
   refuse(STATIC, NU, "", "stiffness: 1e6", "contact.law.power.depth",
          "contact.law.power.depth: contact has no law");
@@ -198,6 +212,7 @@ int main(void) {
   tcase_add_test(test_case, what_does_not_act_has_the_derivative_0_and_a_reason);
   tcase_add_test(test_case, what_has_no_gradient_is_refused_by_name);
   tcase_add_test(test_case, an_equilibrium_alone_is_refused_where_it_does_not_tell);
+  tcase_add_test(test_case, what_yields_and_goes_on_from_another_run_is_refused);
   tcase_add_test(test_case, parameters_without_a_derivative_are_refused_by_name);
   tcase_add_test(test_case, quantities_that_are_not_there_are_refused_by_name);
   tcase_add_test(test_case, what_is_left_unsolved_is_no_gradient);

@@ -12,7 +12,7 @@ enum { MOST = 10, HALVINGS = 2 };
 
 typedef struct Term {
   const char *name, *scene, *settings[3]; // ended by NULL
-  const FemEffectOps *effects[3];         // what acts; none: inertia
+  const FemEffectOps *effects[4];         // what acts; none: inertia
   const char *by[MOST];                   // ended by NULL
   double time;                            // [s]
   double slide;                           // of the second body before that, once friction remembers [m]
@@ -51,6 +51,16 @@ static const Term terms[] = {
     {"damping and viscosity", "gradient_damped", .effects = {&fem_effect_damping}, .time = 0.01,
      .by = {"effects.damping", "bodies.upper.material.damping", "bodies.upper.material.viscosity",
             "bodies.upper.material.bulk_viscosity", "bodies.lower.driven[0].spin"}},
+    {"plasticity",
+     "gradient_yield",
+     {"contact=null"},
+     {MATERIALS, &fem_effect_plasticity},
+     .slide = 7e-3,
+     .time = 0.01,
+     .way = 3e-4,
+     .by = {"bodies.lower.material.young", "bodies.lower.material.poisson",
+            "bodies.lower.material.plasticity.yield", "bodies.lower.material.plasticity.hardening",
+            "bodies.upper.material.plasticity.yield", "bodies.upper.driven[0].table[1][1]"}},
     {"inertia", "gradient_motion", .by = {"bodies.upper.material.density"}},
     {"gravity", "gradient_blocks", .effects = {&fem_effect_gravity}, .time = 0.7,
      .by = {"effects.gravity[2]", "bodies.upper.material.density"}},
@@ -138,7 +148,9 @@ typedef struct Place {
   double *last_way, *lambda;     // of all coordinates                               (values)
   double *rate, *rate_way;       // accelerations                                    (values)
   double (*history_way)[3];      // of q, contact/friction/stick_pull.h              (entries)
-  double step;                   // of the parameter
+  double *plastic_way;           // of what plasticity remembers                     (numbers)
+  int numbers;
+  double step; // of the parameter
 } Place;
 
 static double *draw(Random *random, int count, double size) {
@@ -156,11 +168,19 @@ static ContactStickHistory history_of(const Place *place, const FemState *state)
   return fem_effect_stick_history(stick, &state->histories[fem_effect_stick_place(stick)]);
 }
 
-// Two states are accepted, and a third is tried; the last body, or the only one, has slid at each.
+// Of plasticity, where it is the term; else NULL.
+static FemEffectHistory *plastic_of(const Place *place, FemState *state) {
+  if (place->term->effects[2] != &fem_effect_plasticity) return NULL;
+  int of = fem_effect_plasticity_place(fem_system_effect(&place->side.system, &fem_effect_plasticity));
+  return &state->histories[of];
+}
+
+// Two states are accepted, and a third is tried; the last body, or the only one, has slid at each; all, where
+// they yield, since a point that stays is at its edge.
 static void accept_states(Place *place, Random *random) {
   Side *side = &place->side;
   const FemModel *model = &side->scene.model;
-  int begin = model->bodies[model->body_count - 1].vertex_begin;
+  int begin = plastic_of(place, &side->state) ? 0 : model->bodies[model->body_count - 1].vertex_begin;
   ck_assert_ok(fem_system_begin(&side->system, &side->state, 0));
   for (int k = 1; k < 3; k++) {
     for (int i = 0; i < place->n; i++) {
@@ -187,7 +207,35 @@ static void check_friction(Place *place) {
   ck_assert_int_gt(place->entries, 0);
 }
 
+// That some points yield and some do not, of those that had yielded.
+static void check_plasticity(Place *place, const FemEffectHistory *history) {
+  const FemState *state = &place->side.state;
+  FemEffectHistory next = {0};
+  void *effect = fem_system_effect(&place->side.system, &fem_effect_plasticity);
+  int yields = 0, did = 0, count = fem_effect_plasticity_count(effect);
+  ck_assert_ok(fem_effect_plasticity.advance(effect, state, &next));
+  const FemPlastic *was = (const FemPlastic *)history->values, *is = (const FemPlastic *)next.values;
+  for (int i = 0; i < count; i++) did += was[i].alpha > 0, yields += is[i].alpha > was[i].alpha;
+  ck_assert_int_gt(did, 0);
+  ck_assert_int_gt(yields, 0);
+  ck_assert_int_lt(yields, count);
+  fem_effect_history_destroy(&next);
+}
+
+static void draw_plastic(Place *place, Random *random) {
+  static const double STRAIN = 0.02;
+  const FemEffectHistory *history = plastic_of(place, &place->side.system.accepted);
+  if (!history) return;
+  check_plasticity(place, history);
+  place->numbers = (int)history->count;
+  place->plastic_way = draw(random, place->numbers, STRAIN);
+  FemPlastic *way = (FemPlastic *)place->plastic_way;
+  for (size_t i = 0; i < history->count * sizeof(double) / sizeof *way; i++)
+    for (int k = 0; k < 9; k++) way[i].strain[k] = way[i].strain[3 * (k % 3) + k / 3];
+}
+
 static void draw_history(Place *place, Random *random) {
+  draw_plastic(place, random);
   if (!stick_of(place)) return;
   check_friction(place);
   ContactStickHistory history = history_of(place, &place->side.system.accepted);
@@ -235,8 +283,8 @@ static void open_place(Place *place, const Term *term) {
 }
 
 static void close_place(Place *place) {
-  void *arrays[] = {place->u,      place->v,    place->u_way,    place->v_way,      place->last_way,
-                    place->lambda, place->rate, place->rate_way, place->history_way};
+  void *arrays[] = {place->u,      place->v,    place->u_way,    place->v_way,       place->last_way,
+                    place->lambda, place->rate, place->rate_way, place->history_way, place->plastic_way};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
   fem_state_destroy(&place->before);
   close_side(&place->side);
@@ -251,10 +299,13 @@ static double dot(int count, const double *x, const double *y) {
 // ---- λ · term, somewhere on the way.
 
 static void move_last(Place *place, double share) {
-  const FemState *accepted = &place->side.system.accepted;
+  FemState *accepted = &place->side.system.accepted;
   for (int i = 0; i < place->values; i++)
     place->before.positions[i] = accepted->positions[i] + share * place->last_way[i];
   place->before.version = fem_state_new_version();
+  for (int i = 0; i < place->numbers; i++)
+    plastic_of(place, &place->before)->values[i] =
+        plastic_of(place, &place->side.system.accepted)->values[i] + share * place->plastic_way[i];
   if (!stick_of(place)) return;
   ContactStickHistory from = history_of(place, accepted), to = history_of(place, &place->before);
   for (int e = 0; e < place->entries; e++) {
@@ -377,6 +428,18 @@ static double slope_of_friction(Place *place, const FemTangent *tangent, const F
   return slope;
 }
 
+static double slope_of_yielding(Place *place, const FemParameter *parameter) {
+  FemYielding yielding;
+  if (place->numbers == 0) return 0;
+  ck_assert_ok(fem_yielding_create(&yielding, &place->side.system));
+  fem_yielding_begin(&yielding, &place->side.state);
+  fem_yielding_pull(&yielding, place->lambda, 1);
+  double slope = dot(place->numbers, (const double *)yielding.before, place->plastic_way);
+  if (parameter) slope += place->step * fem_yielding_change(&yielding, parameter);
+  fem_yielding_destroy(&yielding);
+  return slope;
+}
+
 static double slope_with(Place *place, const FemTangent *tangent, const FemChange *change) {
   double *way = memory_zeroed((size_t)place->values, sizeof *way), slope;
   double *speed = memory_zeroed((size_t)place->values, sizeof *speed);
@@ -404,7 +467,7 @@ static double slope_of(Place *place, const FemParameter *parameter) {
   ck_assert_ok(fem_tangent_find(&tangent, &place->side.state));
   ck_assert_ok(fem_change_create(&change, &tangent));
   if (parameter) ck_assert_ok(fem_change_find(&change, &varied, &tangent, parameter, false));
-  double slope = slope_with(place, &tangent, &change);
+  double slope = slope_with(place, &tangent, &change) + slope_of_yielding(place, parameter);
   fem_change_destroy(&change);
   fem_tangent_destroy(&tangent);
   fem_varied_destroy(&varied);
