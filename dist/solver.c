@@ -322,15 +322,16 @@ static Status make_ksp(DistSolver *solver, Mat rows) {
 // Rows of the newest numbers in place of those that there are. What cannot be filled again goes before they
 // are made.
 static Status renew_rows(DistSolver *solver, DistEntries *entries) {
-  Mat rows;
+  Mat rows = NULL;
   if (solver->ksp && is_refilled(solver) && solver->made == solver->product.matrix->layout) {
     PETSC("the solver", KSPGetOperators(solver->ksp, NULL, &rows));
     return fill_rows(solver, entries, rows);
   }
   forget_preconditioner(solver);
-  TRY(make_rows(solver, entries, &rows));
-  TRY(make_ksp(solver, rows));
+  Status status = make_rows(solver, entries, &rows);
+  if (!status) status = make_ksp(solver, rows);
   MatDestroy(&rows); // the solver has it
+  TRY(status);
   solver->made = solver->product.matrix->layout;
   return STATUS_OK;
 }

@@ -170,11 +170,13 @@ Status fem_varied_derive_stiffness(FemVaried *varied, int part, FemParameterKind
 static Status create_contact(FemVaried *varied) {
   const FemContactDef *contact = &varied->model.scene->contact;
   if (varied->contact.self) return STATUS_OK;
-  varied->scene = *varied->model.scene;
-  varied->scene.contact.pairs =
-      memory_copy(contact->pairs, (size_t)contact->pair_count, sizeof *contact->pairs);
-  if (!varied->scene.contact.pairs) return status_no_memory("a pressure law");
-  varied->model.scene = &varied->scene;
+  if (!varied->scene.contact.pairs) { // else they are left of an attempt that failed later
+    void *pairs = memory_copy(contact->pairs, (size_t)contact->pair_count, sizeof *contact->pairs);
+    if (!pairs) return status_no_memory("a pressure law");
+    varied->scene = *varied->model.scene;
+    varied->scene.contact.pairs = pairs;
+    varied->model.scene = &varied->scene;
+  }
   return create_effect(&varied->contact, &fem_effect_contact, &varied->model);
 }
 

@@ -5,7 +5,7 @@
 
 // Matrices of PETSc, the coarsest first, and their rows, the finest first.
 typedef struct Taken {
-  PetscInt level_count;
+  PetscInt level_count, operator_count; // levels that there are interpolations and matrices of; equal
   Mat *matrices,
       *interpolations;  // of all levels but the finest; from all levels but that    (level_count − 1)
   FemRows *rows, *maps; // of the same; rows[0] is the finest level's   (level_count), (level_count)
@@ -25,8 +25,9 @@ static Status open_rows(const FemPetscLibrary *petsc, Mat matrix, int column_cou
   PetscBool is_done = PETSC_FALSE;
   PETSC_TRY(petsc->MatGetRowIJ(matrix, 0, PETSC_FALSE, PETSC_FALSE, &count, &begin, &column, &is_done));
   PETSC_TRY(is_done ? 0 : PETSC_ERR_SUP);
+  *rows = (FemRows){count, column_count, begin, column, NULL};
   PETSC_TRY(petsc->MatSeqAIJGetArrayRead(matrix, &value));
-  *rows = (FemRows){count, column_count, begin, column, value};
+  rows->value = value;
   return STATUS_OK;
 }
 
@@ -35,17 +36,16 @@ static void close_rows(const FemPetscLibrary *petsc, Mat matrix, const FemRows *
   const PetscInt *begin = rows->begin, *column = rows->column;
   const PetscScalar *value = rows->value;
   PetscBool is_done;
-  if (!begin) return;
-  petsc->MatSeqAIJRestoreArrayRead(matrix, &value);
-  petsc->MatRestoreRowIJ(matrix, 0, PETSC_FALSE, PETSC_FALSE, &count, &begin, &column, &is_done);
+  if (value) petsc->MatSeqAIJRestoreArrayRead(matrix, &value);
+  if (begin) petsc->MatRestoreRowIJ(matrix, 0, PETSC_FALSE, PETSC_FALSE, &count, &begin, &column, &is_done);
 }
 
 static Status take(const FemPetscLibrary *petsc, PC multigrid, const FemRows *finest, Taken *taken,
                    PetscErrorCode *code) {
-  PetscInt count;
-  PETSC_TRY(petsc->PCGetInterpolations(multigrid, &count, &taken->interpolations));
-  PETSC_TRY(petsc->PCGetCoarseOperators(multigrid, &taken->level_count, &taken->matrices));
-  PETSC_TRY(count == taken->level_count ? 0 : PETSC_ERR_PLIB);
+  PETSC_TRY(petsc->PCGetInterpolations(multigrid, &taken->level_count, &taken->interpolations));
+  PETSC_TRY(petsc->PCGetCoarseOperators(multigrid, &taken->operator_count, &taken->matrices));
+  const PetscInt count = taken->level_count;
+  PETSC_TRY(count == taken->operator_count ? 0 : PETSC_ERR_PLIB);
   taken->rows = memory_zeroed((size_t)count, sizeof *taken->rows);
   taken->maps = memory_zeroed((size_t)count, sizeof *taken->maps);
   if (!taken->rows || !taken->maps) return status_no_memory("the multigrid of the condensed system");
@@ -65,9 +65,9 @@ static void give_back(const FemPetscLibrary *petsc, Taken *taken) {
   for (int l = 1; l < count; l++) {
     if (taken->rows) close_rows(petsc, taken->matrices[count - 1 - l], &taken->rows[l]);
     if (taken->maps) close_rows(petsc, taken->interpolations[count - 1 - l], &taken->maps[l - 1]);
-    petsc->MatDestroy(&taken->matrices[count - 1 - l]);
-    petsc->MatDestroy(&taken->interpolations[count - 1 - l]);
   }
+  for (int l = 0; l + 1 < count; l++) petsc->MatDestroy(&taken->interpolations[l]);
+  for (int l = 0; l + 1 < (int)taken->operator_count; l++) petsc->MatDestroy(&taken->matrices[l]);
   if (taken->matrices) petsc->release(taken->matrices, __LINE__, __func__, __FILE__);
   if (taken->interpolations) petsc->release(taken->interpolations, __LINE__, __func__, __FILE__);
   memory_free(taken->rows), memory_free(taken->maps);

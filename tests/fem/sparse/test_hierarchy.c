@@ -2,6 +2,8 @@
 // Hierarchies of multigrid: how long one is kept while the matrix moves on, and that no answer shows it.
 #include "bar.h"
 
+#include "fem/sparse/petsc/hierarchy.h"
+
 // S = K + c D + c² M, its set-up and a solution.
 static void solve_shifted(const FemSolverOps *ops, void *solver, Bar *bar, double c, const double *b,
                           double *x) {
@@ -97,10 +99,131 @@ START_TEST(multigrid_leaves_what_it_is_told_it_may) {
 }
 END_TEST
 
+// ---- A library that stands in for PETSc: three levels of 4, 2 and 1 rows. It counts what is open.
+
+typedef struct Level {
+  int count, begin[5], column[4];
+  double value[4];
+} Level;
+
+static Level coarse = {1, {0, 1}, {0}, {2}}, middle = {2, {0, 1, 2}, {0, 1}, {2, 2}},
+             to_middle = {2, {0, 1, 2}, {0, 0}, {1, 1}},
+             to_finest = {4, {0, 1, 2, 3, 4}, {0, 0, 1, 1}, {1, 1, 1, 1}},
+             finest = {4, {0, 1, 2, 3, 4}, {0, 1, 2, 3}, {2, 2, 2, 2}};
+
+static int calls_left;                                         // before the one that fails
+static bool fails_softly;                                      // it is no error, but rows are not given
+static int matrix_count, list_count, rows_count, values_count; // open
+
+static PetscErrorCode call(void) {
+  return calls_left-- == 0 && !fails_softly ? PETSC_ERR_LIB : 0;
+}
+
+static PetscErrorCode give(Level *first, Level *second, PetscInt *count, Mat **matrices) {
+  if (call()) return PETSC_ERR_LIB;
+  *matrices = memory_zeroed(2, sizeof **matrices);
+  (*matrices)[0] = (Mat)first, (*matrices)[1] = (Mat)second;
+  matrix_count += 2, list_count++;
+  *count = 3;
+  return 0;
+}
+
+static PetscErrorCode give_interpolations(PC multigrid, PetscInt *count, Mat **matrices) {
+  (void)multigrid;
+  return give(&to_middle, &to_finest, count, matrices);
+}
+
+static PetscErrorCode give_matrices(PC multigrid, PetscInt *count, Mat **matrices) {
+  (void)multigrid;
+  return give(&coarse, &middle, count, matrices);
+}
+
+static PetscErrorCode open_rows(Mat matrix, PetscInt shift, PetscBool is_symmetric, PetscBool is_by_nodes,
+                                PetscInt *count, const PetscInt **begin, const PetscInt **column,
+                                PetscBool *is_done) {
+  (void)shift, (void)is_symmetric, (void)is_by_nodes;
+  if (call()) return PETSC_ERR_LIB;
+  *is_done = calls_left == -1 && fails_softly ? PETSC_FALSE : PETSC_TRUE;
+  if (!*is_done) return 0;
+  const Level *level = (const Level *)matrix;
+  *count = level->count, *begin = level->begin, *column = level->column;
+  rows_count++;
+  return 0;
+}
+
+static PetscErrorCode close_rows(Mat matrix, PetscInt shift, PetscBool is_symmetric, PetscBool is_by_nodes,
+                                 PetscInt *count, const PetscInt **begin, const PetscInt **column,
+                                 PetscBool *is_done) {
+  (void)shift, (void)is_symmetric, (void)is_by_nodes, (void)count, (void)is_done;
+  ck_assert_ptr_eq(*begin, ((Level *)matrix)->begin);
+  ck_assert_ptr_eq(*column, ((Level *)matrix)->column);
+  rows_count--;
+  return 0;
+}
+
+static PetscErrorCode open_values(Mat matrix, const PetscScalar **values) {
+  if (call()) return PETSC_ERR_LIB;
+  *values = ((Level *)matrix)->value;
+  values_count++;
+  return 0;
+}
+
+static PetscErrorCode close_values(Mat matrix, const PetscScalar **values) {
+  ck_assert_ptr_eq(*values, ((Level *)matrix)->value);
+  values_count--;
+  return 0;
+}
+
+static PetscErrorCode destroy_matrix(Mat *matrix) {
+  *matrix = NULL;
+  matrix_count--;
+  return 0;
+}
+
+static PetscErrorCode release(void *list, int line, const char *function, const char *file) {
+  (void)line, (void)function, (void)file;
+  memory_free(list);
+  list_count--;
+  return 0;
+}
+
+static const FemPetscLibrary stand_in = {.PCGetInterpolations = give_interpolations,
+                                         .PCGetCoarseOperators = give_matrices,
+                                         .MatGetRowIJ = open_rows,
+                                         .MatRestoreRowIJ = close_rows,
+                                         .MatSeqAIJGetArrayRead = open_values,
+                                         .MatSeqAIJRestoreArrayRead = close_values,
+                                         .MatDestroy = destroy_matrix,
+                                         .release = release};
+
+// Whichever call of PETSc fails, all that was opened is closed.
+START_TEST(a_hierarchy_that_cannot_be_taken_leaves_nothing_open) {
+  const FemRows rows = {4, 4, finest.begin, finest.column, finest.value};
+  fails_softly = _i;
+  int failures = 0;
+  for (int k = 0; k <= 10; k++) {
+    FemCycle cycle = {0};
+    PetscErrorCode code;
+    calls_left = k;
+    Status status = fem_hierarchy_take(&stand_in, NULL, &rows, &cycle, &code);
+    ck_assert_int_eq(matrix_count, 0);
+    ck_assert_int_eq(list_count, 0);
+    ck_assert_int_eq(rows_count, 0);
+    ck_assert_int_eq(values_count, 0);
+    ck_assert_int_eq(status, code ? STATUS_SOLVER : STATUS_OK);
+    failures += status != STATUS_OK;
+    fem_cycle_destroy(&cycle);
+  }
+  // Two lists, and of four matrices rows and values; without an error, rows alone.
+  ck_assert_int_eq(failures, fails_softly ? 4 : 10);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("hierarchy");
   tcase_add_test(cases, a_hierarchy_that_is_kept_never_touches_the_answer);
   tcase_add_test(cases, a_hierarchy_is_kept_while_c_changes_little);
+  tcase_add_loop_test(cases, a_hierarchy_that_cannot_be_taken_leaves_nothing_open, 0, 2);
   tcase_add_test(cases, multigrid_leaves_what_it_is_told_it_may);
   return suite_run("hierarchy", cases, 60);
 }
