@@ -27,8 +27,8 @@ void memory_trim(void);
 
 // Gives large arrays memory of their own, which takes no room before it is used and goes back to the system
 // when the array is freed. The C library does so by default, but moves the limit up as large arrays are
-// freed, and a loaded library may have switched it off (SuperLU_DIST, part of PETSc, does). To be called
-// first in a program.
+// freed. A loaded library may have switched it off, as SuperLU_DIST, part of PETSc, does. To be called first
+// in a program.
 void memory_separate(void);
 
 // Tests: the k-th allocation from now on (1 = the next) fails once; 0 switches it off.

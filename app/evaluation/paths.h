@@ -5,11 +5,11 @@
 //   rotation     the first turns by 2 rad about its centroid and one of the coordinate axes
 //   deformation  all vertices move, half the way to another pair
 //
-// It is cut into 64 intervals, and in each that has an overlap the half with the larger change is taken again
+// It is cut into 64 intervals. In each that has an overlap the half with the larger change is taken again
 // and again, until the interval is 5e-9 long: a jump is what is left of the change then. Of V the part that
-// ∇V explains is taken off. Half of the paths start from pairs of the law `scene`, half from random
-// ones that overlap. Paths that touch nothing, or on which a tetrahedron gets flat (det of its edges below
-// 1e-3 of the longest one cubed) or turns inside out, where the true V has kinks, are replaced.
+// ∇V explains is taken off. Half of the paths start from pairs of the law `scene`, half from random ones
+// that overlap. Some paths are replaced: those that touch nothing, and those with kinks of the true V, where
+// a tetrahedron gets flat (det of its edges below 1e-3 of the longest one cubed) or turns inside out.
 #ifndef TETLAP_APP_EVALUATION_PATHS_H
 #define TETLAP_APP_EVALUATION_PATHS_H
 

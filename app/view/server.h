@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A server of two things on the loopback address, the page about a run (/) and how far it is (/state), and of
-// nothing else: no path leads to a file. A request must come from this machine, name it as its host (so that
-// another name which was made to point here finds nothing, DNS rebinding) and not come from another site's
-// page.
+// A server of two things on the loopback address, the page about a run (/) and how far it is (/state), and
+// of nothing else: no path leads to a file. A request must come from this machine and not from another
+// site's page. It must name this machine as its host, so that a foreign name that was made to point here
+// finds nothing (DNS rebinding).
 #ifndef TETLAP_APP_VIEW_SERVER_H
 #define TETLAP_APP_VIEW_SERVER_H
 

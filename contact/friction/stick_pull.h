@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Derivatives of friction by elastic stick (contact/friction/stick.h), backwards: from those of a function g
-// by the forces of an evaluation and by the history that it leaves to those by positions now and at the last
-// accepted state, by the history there, and by the constants of the law. Every term is differentiated: N, n,
-// the weights, the area, F. Of the history (S, E) the derivatives are by
+// Derivatives of friction by elastic stick (contact/friction/stick.h), backwards. Given are those of a
+// function g by the forces of an evaluation and by the history that it leaves. Sought are those by positions
+// now and at the last accepted state, by the history there, and by the constants of the law. Every term is
+// differentiated: N, n, the weights, the area, F. Of the history (S, E) the derivatives are by
 //
 //   q = √(2E) S/|S|,   carried = |q| F q / (√k |F q|),   next q = √k |s| F⁻¹ s / |F⁻¹ s|,
 //

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The mesh that contact works on, and on it how deep each point of a body lies below its surface.
 //
-// For the potential `field` that mesh is not quite the body's own. With φ the distance of a vertex to the
-// surface, linear in between, tetrahedra along a body's edges have four vertices on the surface and no depth
-// at all, and the slope of φ on outer faces, which is the pressure, is off elsewhere near them. So a
+// For the potential `field` that mesh is not quite the body's own. Let φ be the distance of a vertex to the
+// surface, linear in between. Tetrahedra along a body's edges have four vertices on the surface, and so no
+// depth at all. Elsewhere near edges the slope of φ on outer faces, which is the pressure, is off. So a
 // tetrahedron with an outer face f where
 //
 //   |φ(apex) / height over f − 1| > .02,   or without any vertex inside,

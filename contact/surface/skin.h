@@ -2,9 +2,9 @@
 // How the faces of a body's surface hang together: edges, creases, and the smooth part of the surface about a
 // vertex.
 //
-// An edge is a crease where its faces' normals make more than a given angle, where it has no two faces (at a
-// part of the boundary that is no surface), or where more than two meet. The sector of a vertex and a face is
-// what is reached from that face about the vertex without crossing a crease.
+// An edge is a crease where its faces' normals make more than a given angle. It is one, too, where it has no
+// two faces (at a part of the boundary that is no surface) and where more than two meet. The sector of a
+// vertex and a face is what is reached from that face about the vertex without crossing a crease.
 #ifndef TETLAP_CONTACT_SURFACE_SKIN_H
 #define TETLAP_CONTACT_SURFACE_SKIN_H
 

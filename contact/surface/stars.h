@@ -9,12 +9,12 @@
 //
 //   x = Σ_corners −⅓ x_c + Σ_middles ⅔ x_m,
 //
-// its other faces into four as the eighths do, so that neighbours fit, and all triangles make cells with one
+// its other faces into four as the eighths do, so that neighbours fit. All triangles make cells with one
 // vertex o inside. A linear function of the fan then adds up to area/9 − ⅓ · area/3 = 0 at a corner and to
-// area/9 + ⅔ · area/3 = area/3 at a middle: the nodal forces of an even pressure are those of the element,
-// the volume below the fan is that below the curved face (to first order in its curvature), and rigid motion
-// and balance are kept, since the weights reproduce linear fields. o lies at λ_f = δ/height_f for the faces
-// on the surface, ¼ for the others, δ as in contact/surface/mesh.h, and follows all ten nodes by their shape
+// area/9 + ⅔ · area/3 = area/3 at a middle: the nodal forces of an even pressure are those of the element.
+// The volume below the fan is that below the curved face, to first order in its curvature. Rigid motion and
+// balance are kept, since the weights reproduce linear fields. o lies at λ_f = δ/height_f for the faces on
+// the surface, ¼ for the others, δ as in contact/surface/mesh.h, and follows all ten nodes by their shape
 // functions there.
 //
 // The mesh so made is a definition of its own. Its positions follow from the nodes by the weights, and

@@ -2,11 +2,11 @@
 // What two closed tetrahedra have in common, proven in integer arithmetic: the dimension of their
 // intersection P, and on which face of each it lies.
 //
-// P is a polytope cut out by eight half-spaces. Each of its vertices is a vertex of one tetrahedron or the
-// point where an edge of one crosses a plane of the other, so the signs of the 68 brackets of
-// overlap/exact/pair.h name them all and say which of the eight planes pass through each. The planes through
-// every vertex are those that hold all of P: if their normals have rank r, P has dimension 3 − r, and with c
-// of them of one tetrahedron, P lies in a face of it of dimension 3 − c and in none smaller.
+// P is a polytope cut out by eight half-spaces. Each of its vertices is a vertex of one tetrahedron, or the
+// point where an edge of one crosses a plane of the other. The signs of the 68 brackets of
+// overlap/exact/pair.h name all of them, and say which of the eight planes pass through each. The planes
+// through every vertex are those that hold all of P. If their normals have rank r, P has dimension 3 − r. If
+// c of them are of one tetrahedron, P lies in a face of it of dimension 3 − c and in none smaller.
 #ifndef TETLAP_DATAGEN_DRAW_PROOF_H
 #define TETLAP_DATAGEN_DRAW_PROOF_H
 

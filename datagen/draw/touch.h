@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Candidates for pairs that touch: strategies 2 to 4 of the paper (TetrahedronPairNet, section 2.1) and the
-// three that it misses. All vertices are in the unit cube. A candidate is built to touch in
-// exact numbers, but whether it is what its kind claims (the edge does reach the face, rounding of the free
-// vertices did not cross a plane) is for datagen_proof_confirms to say.
+// three that it misses. All vertices are in the unit cube. A candidate is built to touch in exact numbers.
+// Whether it is what its kind claims is for datagen_proof_confirms to say: the edge may not reach the face,
+// and rounding may have moved the free vertices across a plane.
 //
 // Why touching survives rounding to double. The first tetrahedron's vertices a_i are whole multiples of
 // 2⁻²⁴, uniform in the cube. A contact point is p = Σ k_i a_i / 2²⁴ with whole k_i that sum to 2²⁴: a whole
@@ -10,11 +10,11 @@
 // plane. The points of a crossing edge are p ± k d / 2²⁴ with d whole multiples of 2⁻²⁴. Nothing else has to
 // be exact, and the free vertices are ordinary doubles.
 //
-// The free vertices: a point at distance r from the contact (its point, the edge's middle, the face's
-// centroid), r uniform in (0, 1), its direction uniform on the hemisphere n·d > 1e-16 about the outward
-// normal n, drawn again until the point is in the cube. For kinds 6 to 8, n is a random positive combination
-// of the outward unit normals of the faces that meet at the vertex or edge: any plane that touches the first
-// tetrahedron there and nowhere else may be the separating one.
+// The free vertices: points at distance r from the contact (its point, the edge's middle, the face's
+// centroid), r uniform in (0, 1). The direction is uniform on the hemisphere n·d > 1e-16 about the outward
+// normal n. Both are drawn again until the point is in the cube. For kinds 6 to 8, n is a random positive
+// combination of the outward unit normals of the faces that meet at the vertex or edge: any plane that
+// touches the first tetrahedron there and nowhere else may be the separating one.
 #ifndef TETLAP_DATAGEN_DRAW_TOUCH_H
 #define TETLAP_DATAGEN_DRAW_TOUCH_H
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Machine code that was compiled before, in the user's cache folder: $TETLAP_CACHE, else
-// $XDG_CACHE_HOME/tetlap, else ~/.cache/tetlap. A file's name is a digest of what the code was made of, and
-// its first bytes too, so that a file that is not what it says is compiled anew. Without a folder nothing is
-// kept, which is no failure.
+// $XDG_CACHE_HOME/tetlap, else ~/.cache/tetlap. A file's name is a digest of what the code was made of. Its
+// first bytes hold this digest and that of the code: a file that is not what it says is compiled anew.
+// Without a folder nothing is kept, which is no failure.
 #ifndef TETLAP_DEVICE_BACKEND_CACHE_H
 #define TETLAP_DEVICE_BACKEND_CACHE_H
 

@@ -3,7 +3,7 @@
 // positions, and the contact stiffness that is chosen, depend on them.
 //
 // Every law's force is linear in λ, μ, in mooney_rivlin's share, in ogden's shares and in the modulus of
-// fibres, that of damping in β and viscosities, too, so that half the difference of two forces is the
+// fibres; that of damping is linear in β and viscosities. So half the difference of two forces is the
 // derivative, up to rounding. Ogden's exponents and directions of fibres take a difference of sixth order.
 // The derivative of a pressure law by a constant stands in its place (contact/pressure/law.h).
 #ifndef TETLAP_FEM_GRADIENT_VARIED_H

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run that the caller steps: it goes on to a time that the caller gives, its state is there to be read in
-// between, and it can be taken back to any state that was kept.
+// A run that the caller steps. It goes on to a time that the caller gives. In between its state can be read,
+// and it can be taken back to any state that was kept.
 //
 //   open ─► advance ─► read ─► (change what is prescribed) ─► advance ─► … ─► close
 //               ▲        keep ─► checkpoint ─► restore │

@@ -58,9 +58,10 @@ void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, doub
 // Before the audit of a static scene's next state. `begin` and `end` [J]: the work that the forces at the
 // begin and at the end of a load step, `step` long, would do along the displacements of all that is driven.
 // The work is their mean (trapezoidal rule), exact where force is proportional to displacement. Its
-// uncertainty, `open`, is the difference of this step's change from that of the step before, or from none
-// (contact or slip may begin within the step), plus `unbalanced`, the work of the forces that equilibrium
-// leaves [J]. A gain below `open` is not reported.
+// uncertainty, `open`, is the difference of this step's change from that of the step before, plus
+// `unbalanced`. Without a step before the whole change counts, since contact or slip may begin within the
+// step. `unbalanced` is the work of the forces that equilibrium leaves [J]. A gain below `open` is not
+// reported.
 void fem_audit_load_step(FemAudit *audit, double step, double begin, double end, double unbalanced);
 
 // The audit as it would be after accepting this state.

@@ -3,8 +3,8 @@
 // double precision.
 //
 // Each vertex of the polyhedron is eight numbers: its barycentric coordinates in A (lanes 0–3) and in B
-// (lanes 4–7). Lane f is zero on plane f and positive inside, so the distances that clipping needs are
-// already there, a cut is a convex combination of lanes, and what lies on a plane has an exact zero in its
+// (lanes 4–7). Lane f is zero on plane f and positive inside. So the distances that clipping needs are
+// already there, and a cut is a convex combination of lanes. What lies on a plane has an exact zero in its
 // lane.
 //
 //        q                     One record per edge, walked from → to with the polyhedron's face `left` on one

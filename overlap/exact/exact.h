@@ -3,9 +3,9 @@
 // arithmetic. The referee of the other models.
 //
 // What is exact. The coordinates are taken as the rational numbers that they are. Every decision is the sign
-// of an integer: the four corners' brackets [w x y z] = det(x − w, y − w, z − w) over the pair's vertices are
-// enough to build the intersection (pair.h), so coplanar, touching, nested, identical, sliver-shaped
-// or far-scattered input takes the same path as any other and the flags are always right.
+// of an integer. The four corners' brackets [w x y z] = det(x − w, y − w, z − w) over the pair's vertices
+// are enough to build the intersection (pair.h). So coplanar, touching, nested, identical, sliver-shaped or
+// far-scattered input takes the same path as any other, and the flags are always right.
 //
 // What is rounded, and how far. V and each face's part of ∇V are sums of non-negative rationals, each an
 // integer quotient rounded to long double once or twice: nothing cancels. Where long double has 64 bits or

@@ -9,12 +9,12 @@
 // the exact model has by symmetry (order of vertices and of tetrahedra, rigid motion, scale, net force and
 // torque of a pair) it has to rounding.
 //
-// The centroid x̄ is the centre moved within the frame. α_k = Σ_m c_m(f) e_mk, e_mk the features that plane k
-// has of its own (features/features.h) and c_m(f) what the network makes of the pair's beside ρ; z = Σ_k α_k
-// q_k with q_k the rows of Q; a plane's s_k, a barycentric coordinate of a tetrahedron, is s_k (1 + q_k·z) at
-// x̄. Hence x̄ goes along with affine maps and any order of planes, is the centre of a simplex at the onset of
-// an overlap, and lies inside of both tetrahedra, since z is shortened where a slack would lose 99 % of
-// itself.
+// The centroid x̄ is the centre moved within the frame. Let α_k = Σ_m c_m(f) e_mk, with e_mk the features
+// that plane k has of its own (features/features.h) and c_m(f) what the network makes of the pair's beside
+// ρ. Let z = Σ_k α_k q_k with q_k the rows of Q. A plane's s_k, a barycentric coordinate of a tetrahedron,
+// is s_k (1 + q_k·z) at x̄. Hence x̄ goes along with affine maps and any order of planes, and is the centre
+// of a simplex at the onset of an overlap. It lies inside of both tetrahedra, since z is shortened where a
+// slack would lose 99 % of itself.
 //
 // The network is anything with the operations below; without one φ = ln 1.28. Pairs too flat for the
 // frame, or whose centre Newton's method does not find, are answered by the exact model and flagged FALLBACK

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The table of every key of a scene file: its type, unit, range, default, help, and where its value goes in
-// FemSceneDef. From it come reading (scene_read), writing (scene_write), the JSON Schema and the manual's
-// reference page (scene_schema), so a new key is one line in the file of its section in app/scene/keys/.
+// FemSceneDef. Reading (scene_read), writing (scene_write), the JSON Schema and the manual's reference page
+// (scene_schema) are made from it. So a new key is one line in the file of its section in app/scene/keys/.
 #ifndef TETLAP_APP_SCENE_KEYS_KEYS_H
 #define TETLAP_APP_SCENE_KEYS_KEYS_H
 

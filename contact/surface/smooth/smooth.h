@@ -8,9 +8,9 @@
 // corners. An edge that is straight stays whole, so a body of flat faces stays as it is. A point keeps within
 // a quarter of the height of the tetrahedra at the surface; further in where a cell would be inside out.
 //
-// So carried, an even pressure would load vertices unevenly where the mesh is irregular or ends: the mean way
-// off the chords, μ_i = Σ_f ∫_f (x − chord) dA / Σ_f A_f over the faces f round vertex i, linear in the
-// vertices, is taken from the vertex and from its share of the points round it, and its value at rest,
+// So carried, an even pressure would load vertices unevenly where the mesh is irregular or ends. The mean
+// way off the chords round vertex i is μ_i = Σ_f ∫_f (x − chord) dA / Σ_f A_f over the faces f there, linear
+// in the vertices. It is taken from the vertex and from its share of the points round it. Its value at rest,
 // carried by the tetrahedra at these faces, is added. Nothing moves at rest or under an affine motion, and
 // what an even pressure puts on a vertex is a third of the area of its faces.
 //

@@ -5,9 +5,9 @@
 // the running run discards it, too, and begins anew from these data, exactly as a run does that is resumed
 // from the file. What follows is therefore the same to the last bit.
 //
-// The file is HDF5 (h5dump and h5py read it) behind a block of 512 bytes of text that holds the format, the
-// size and the digest of the rest, so that damage is found before HDF5 sees it. Every number has an attribute
-// `unit`, the root the attribute `format`.
+// The file is HDF5 (h5dump and h5py read it) behind a block of 512 bytes of text. The block holds the
+// format, and the size and the digest of the rest: damage is found before HDF5 sees it. Every number has an
+// attribute `unit`, the root the attribute `format`.
 #ifndef TETLAP_FEM_RUN_CHECKPOINT_CHECKPOINT_H
 #define TETLAP_FEM_RUN_CHECKPOINT_CHECKPOINT_H
 

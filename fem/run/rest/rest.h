@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sleep: bodies that have come to rest take no part in the computation until something acts on them.
 //
-// A body is calm while every vertex is slower than `speed`. Bodies that touch, or are nearer than the contact
-// margin, make an island. An island falls asleep as a whole once each of its bodies has been calm for `time`,
-// the forces on each balance (its centre of mass was accelerated by no more than `acceleration` in the last
-// step), and nothing that acts on it is changing: its vertices stay where they are and carry no unknowns, and
-// contact within it is neither searched nor evaluated. It awakes, from velocity 0, when
+// A body is calm while every vertex is slower than `speed`. Bodies that touch, or are nearer than the
+// contact margin, make an island. An island falls asleep as a whole once each of its bodies has been calm
+// for `time`, the forces on each balance, and nothing that acts on it is changing. Forces balance where the
+// last step accelerated the centre of mass by no more than `acceleration`. The vertices of an island asleep
+// stay where they are and carry no unknowns; contact within it is neither searched nor evaluated. It awakes,
+// from velocity 0, when
 //   – a body that is awake, or an obstacle that moves, comes within the margin of one of its bodies,
 //   – a load, a driven vertex or a release on it, or an obstacle near it, begins to change.
 //
