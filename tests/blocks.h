@@ -91,6 +91,19 @@ static inline void blocks_shift(const Blocks *blocks, double *x, int body, const
     for (int c = 0; c < 3; c++) x[3 * v + c] += by[c];
 }
 
+// The four sides of blocks of that width that stand on each other, bits 0 … 3           (vertex_count)
+static inline unsigned char *blocks_mark_sides(const Blocks *blocks, double width) {
+  unsigned char *inner = calloc((size_t)blocks->vertex_count, 1);
+  ck_assert_ptr_nonnull(inner);
+  for (int v = 0; v < blocks->vertex_count; v++)
+    for (int c = 0; c < 2; c++) {
+      double x = blocks->x[3 * v + c];
+      if (fabs(x) < 1e-9) inner[v] |= (unsigned char)(1 << 2 * c);
+      if (fabs(x - width) < 1e-9) inner[v] |= (unsigned char)(2 << 2 * c);
+    }
+  return inner;
+}
+
 static inline void blocks_destroy(Blocks *blocks) {
   free(blocks->x);
   free(blocks->tets);

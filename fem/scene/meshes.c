@@ -64,16 +64,27 @@ static Status take_mesh(FemMesh *mesh, const FemSceneDef *scene, const char *pat
   return STATUS_OK;
 }
 
-// Reads or makes the mesh of a body or an obstacle and puts it in its place.
-static Status load_mesh(FemMesh *mesh, const FemSceneDef *scene, const char *path, const double box_size[3],
-                        const int box_cells[3], const FemMeshOptions *options, const FemPlacement *placement,
-                        FemElementKind element, KeptMesh *kept) {
-  TRY(path ? take_mesh(mesh, scene, path, options, kept) : fem_mesh_box(mesh, box_size, box_cells));
-  TRY(fem_mesh_place(mesh, placement));
-  if (options->is_curved && element != FEM_ELEMENT_QUADRATIC)
+// What the mesh of a body or an obstacle is made of; all is borrowed.
+typedef struct MeshSource {
+  const char *path; // NULL: a box
+  const double *box_size;
+  const int *box_cells;
+  const FemMeshOptions *options;
+  const FemPlacement *placement;
+  FemElementKind element;
+} MeshSource;
+
+// Reads or makes a mesh and puts it in its place.
+static Status load_mesh(FemMesh *mesh, const FemSceneDef *scene, const MeshSource *source, KeptMesh *kept) {
+  const char *path = source->path;
+  const FemMeshOptions *options = source->options;
+  TRY(path ? take_mesh(mesh, scene, path, options, kept)
+           : fem_mesh_box(mesh, source->box_size, source->box_cells));
+  TRY(fem_mesh_place(mesh, source->placement));
+  if (options->is_curved && source->element != FEM_ELEMENT_QUADRATIC)
     return status_fail(STATUS_INPUT, "'mesh.curved': only quadratic elements have edges that can be curved; "
                                      "write 'element: quadratic', or leave 'curved' out");
-  if (element == FEM_ELEMENT_QUADRATIC) {
+  if (source->element == FEM_ELEMENT_QUADRATIC) {
     Status status = options->is_curved ? fem_mesh_curve(mesh, scene->contact.crease) : STATUS_OK;
     if (!status) status = fem_mesh_make_quadratic(mesh);
     return status && path ? status_prefix(status, "%s", path) : status;
@@ -92,16 +103,18 @@ static Status fail_at(Status status, const FemSceneDef *scene, const FemScenePla
 static Status load_each(const FemSceneDef *scene, FemMesh *meshes, KeptMesh *kept) {
   for (int b = 0; b < scene->body_count; b++) {
     const FemBodyDef *def = &scene->bodies[b];
-    Status status = load_mesh(&meshes[b], scene, def->mesh_path, def->box_size, def->box_cells,
-                              &def->mesh_options, &def->placement, def->element, kept);
+    MeshSource source = {def->mesh_path,     def->box_size,   def->box_cells,
+                         &def->mesh_options, &def->placement, def->element};
+    Status status = load_mesh(&meshes[b], scene, &source, kept);
     if (status) return fail_at(status, scene, &def->mesh_place, "body", def->name);
   }
   int next = scene->body_count;
   for (int o = 0; o < scene->obstacle_count; o++) {
     const FemObstacleDef *def = &scene->obstacles[o];
     if (def->kind != FEM_OBSTACLE_MESH) continue;
-    Status status = load_mesh(&meshes[next++], scene, def->mesh_path, def->box_size, def->box_cells,
-                              &def->mesh_options, &def->placement, FEM_ELEMENT_LINEAR, kept);
+    MeshSource source = {def->mesh_path,     def->box_size,   def->box_cells,
+                         &def->mesh_options, &def->placement, FEM_ELEMENT_LINEAR};
+    Status status = load_mesh(&meshes[next++], scene, &source, kept);
     if (status) return fail_at(status, scene, &def->mesh_place, "obstacle", def->name);
   }
   return STATUS_OK;

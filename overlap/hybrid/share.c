@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "overlap/ops.h"
+#include "overlap/pair/bend.h"
 #include "overlap/pair/invariant.h"
 #include "overlap/pair/simplex.h"
 
@@ -14,30 +15,24 @@ enum { SIZE = OVERLAP_PAIR_SIZE, HALF = SIZE / 2, FACTORS = 3 };
 static const double BEGIN = 0.9, END = 0.98; // r, s
 
 // S(x) and its derivatives by the logarithm that x is linear in.
-typedef struct Step {
-  double value, slope, bend;
-} Step;
-
-static Step step_of(double logarithm, double range) {
-  double x = logarithm / range;
-  if (x >= 1) return (Step){1, 0, 0};
-  if (!(x > 0)) return (Step){0, 0, 0};
-  return (Step){x * x * (3 - 2 * x), 6 * x * (1 - x) / range, 6 * (1 - 2 * x) / (range * range)};
+static OverlapBend step_of(double logarithm, double range) {
+  OverlapBend step = overlap_bend_rise(logarithm / range, 1);
+  return (OverlapBend){step.value, step.slope / range, step.bend / (range * range)};
 }
 
-static bool find_steps(const OverlapHybridSigns *signs, Step steps[FACTORS]) {
+static bool find_steps(const OverlapHybridSigns *signs, OverlapBend steps[FACTORS]) {
   if (!(signs->volume > 0 && signs->bound > 0)) return false;
   steps[0] = step_of(log(signs->bound / (signs->doubt * signs->volume)), log(2));
   for (int t = 0; t < 2; t++) {
     double size = overlap_invariant_tet_volume(signs->pair + HALF * t),
            share = signs->volume / (BEGIN * size);
-    steps[1 + t] = share > 1 ? step_of(log(share), log(END / BEGIN)) : (Step){0, 0, 0};
+    steps[1 + t] = share > 1 ? step_of(log(share), log(END / BEGIN)) : (OverlapBend){0, 0, 0};
   }
   return true;
 }
 
 // The product of 1 − S of all factors but f and g.
-static double left_by_others(const Step steps[FACTORS], int f, int g) {
+static double left_by_others(const OverlapBend steps[FACTORS], int f, int g) {
   double product = 1;
   for (int k = 0; k < FACTORS; k++)
     if (k != f && k != g) product *= 1 - steps[k].value;
@@ -45,12 +40,12 @@ static double left_by_others(const Step steps[FACTORS], int f, int g) {
 }
 
 double overlap_hybrid_share(const OverlapHybridSigns *signs) {
-  Step steps[FACTORS];
+  OverlapBend steps[FACTORS];
   return find_steps(signs, steps) ? 1 - left_by_others(steps, -1, -1) : 0;
 }
 
 double overlap_hybrid_share_by_volume(const OverlapHybridSigns *signs) {
-  Step steps[FACTORS];
+  OverlapBend steps[FACTORS];
   double slope = 0;
   if (!find_steps(signs, steps)) return 0;
   for (int f = 0; f < FACTORS; f++)
@@ -84,7 +79,7 @@ static void find_changes(const OverlapHybridSigns *signs, double changes[FACTORS
 }
 
 // Σ_f K_f s_f′ ∇² of the logarithms.
-static void bend_logs(const OverlapHybridSigns *signs, const Step steps[FACTORS], double *hessian) {
+static void bend_logs(const OverlapHybridSigns *signs, const OverlapBend steps[FACTORS], double *hessian) {
   double factors[FACTORS];
   for (int f = 0; f < FACTORS; f++) factors[f] = left_by_others(steps, f, f) * steps[f].slope;
   add_log_bend(factors[0], signs->bound, signs->bound_gradient, signs->bound_hessian, hessian);
@@ -99,7 +94,7 @@ static void bend_logs(const OverlapHybridSigns *signs, const Step steps[FACTORS]
 }
 
 double overlap_hybrid_share_derive(const OverlapHybridSigns *signs, double *gradient, double *hessian) {
-  Step steps[FACTORS];
+  OverlapBend steps[FACTORS];
   double changes[FACTORS][SIZE];
   memset(gradient, 0, SIZE * sizeof *gradient);
   if (hessian) memset(hessian, 0, SIZE * SIZE * sizeof *hessian);

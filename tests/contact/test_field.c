@@ -528,19 +528,6 @@ END_TEST
 
 // ---- Faces that are no surface.
 
-// The four sides of two blocks that stand on each other, bits 0 … 3.
-static unsigned char *mark_sides(const Scene *scene, double width) {
-  unsigned char *inner = calloc((size_t)scene->blocks.vertex_count, 1);
-  ck_assert_ptr_nonnull(inner);
-  for (int v = 0; v < scene->blocks.vertex_count; v++)
-    for (int c = 0; c < 2; c++) {
-      double x = scene->blocks.x[3 * v + c];
-      if (fabs(x) < 1e-9) inner[v] |= (unsigned char)(1 << 2 * c);
-      if (fabs(x - width) < 1e-9) inner[v] |= (unsigned char)(2 << 2 * c);
-    }
-  return inner;
-}
-
 // The force between them, over 2 c d times their area.
 static double share_of_force(bool has_inner, double *sideways) {
   double depth = 0.1, total[3] = {0};
@@ -548,7 +535,7 @@ static double share_of_force(bool has_inner, double *sideways) {
   blocks_add(&scene.blocks, &(BlockDef){.corner = {0, 0, -2}, .cell = {1, 1, 1}, .cells = {4, 4, 2}});
   blocks_add(&scene.blocks,
              &(BlockDef){.corner = {0, 0, -depth}, .cell = {0.8, 0.8, 0.7}, .cells = {5, 5, 3}});
-  unsigned char *inner = mark_sides(&scene, 4);
+  unsigned char *inner = blocks_mark_sides(&scene.blocks, 4);
   scene.inner = has_inner ? inner : NULL;
   start(&scene, "clip");
   double *force = forces_at(&scene, scene.blocks.x);

@@ -329,19 +329,6 @@ END_TEST
 
 // ---- Flat surfaces.
 
-// The four sides of two blocks that stand on each other, bits 0 … 3.
-static unsigned char *mark_sides(const Scene *scene, double width) {
-  unsigned char *inner = calloc((size_t)scene->blocks.vertex_count, 1);
-  ck_assert_ptr_nonnull(inner);
-  for (int v = 0; v < scene->blocks.vertex_count; v++)
-    for (int c = 0; c < 2; c++) {
-      double x = scene->blocks.x[3 * v + c];
-      if (fabs(x) < 1e-9) inner[v] |= (unsigned char)(1 << 2 * c);
-      if (fabs(x - width) < 1e-9) inner[v] |= (unsigned char)(2 << 2 * c);
-    }
-  return inner;
-}
-
 // The pressure of a block of 4 × 4 that overlaps by `depth` with a block of another mesh or a floor; `model`
 // NULL: with the floor. `area`: as contact tells it.
 static double flat_pressure(const ContactLaw *law, double depth, const char *model, double *area) {
@@ -352,7 +339,7 @@ static double flat_pressure(const ContactLaw *law, double depth, const char *mod
              &(BlockDef){.corner = {0, 0, -depth}, .cell = {0.8, 0.8, 0.7}, .cells = {5, 5, 3}});
   scene.shape_count = model ? 0 : 1;
   scene.shape = (ContactShape){.name = "floor", .normal = {0, 0, 1}};
-  unsigned char *inner = mark_sides(&scene, 4);
+  unsigned char *inner = blocks_mark_sides(&scene.blocks, 4);
   scene.inner = inner;
   start(&scene, model ? model : "clip");
   double *force = forces_at(&scene, scene.blocks.x), total = 0;
