@@ -301,6 +301,10 @@ static Status parse_entry(Parser *parser, const yaml_event_t *event, SceneNode *
   if (event->type != YAML_SCALAR_EVENT)
     return fail_mark(parser, mark, "a key must be a word, found a structure");
   const char *key = (const char *)event->data.scalar.value;
+  if (is_number(key))
+    return fail_mark(parser, mark,
+                     "a number, '%.60s', where a key must be; numbers have no commas: write 1000000, 0.5",
+                     key);
   const SceneNode *earlier = app_scene_tree_find(map, key);
   if (earlier)
     return fail_mark(parser, mark, "duplicate key '%.60s'; it is already at line %d, column %d", key,

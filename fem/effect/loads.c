@@ -6,12 +6,13 @@
 // A torque adds nothing to the matrix: its derivative couples all vertices of the selection with each other,
 // and a moment of constant direction has no potential. Newton's method then takes more iterations, as many as
 // the turn within a step asks for.
+#include "fem/effect/loads.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "fem/effect/system.h"
 #include "fem/element/quadratic_face.h"
 
 typedef struct Loads {
@@ -116,6 +117,18 @@ static Status find_work(Loads *loads, const FemState *state, double *work) {
     *work += 0.5 * (loads->last[i] + loads->force[i]) * (state->positions[i] - last->positions[i]);
   for (int i = 0; i < loads->model->load_count; i++)
     if (loads->model->loads[i].weight) TRY(add_turning(loads, &loads->model->loads[i], state, work));
+  return STATUS_OK;
+}
+
+Status fem_effect_loads_change(const FemSystem *system, const FemState *state, double *change) {
+  Loads *loads = fem_system_effect(system, &fem_effect_loads);
+  const FemState *last = state->last;
+  *change = 0;
+  if (!loads) return STATUS_OK;
+  TRY(find_forces(loads, state, loads->force));
+  TRY(find_forces(loads, last, loads->last));
+  for (int i = 0; i < 3 * loads->model->vertex_count; i++)
+    *change += (loads->force[i] - loads->last[i]) * (state->positions[i] - last->positions[i]);
   return STATUS_OK;
 }
 

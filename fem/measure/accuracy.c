@@ -147,6 +147,7 @@ static bool is_fullest(FemAccuracy *accuracy, const FemSystem *system, const Fem
   found->elastic[0] = first, found->elastic[1] = second;
   found->with = energy;
   found->stored = energy + first + second;
+  found->full_time = state->time;
   return true;
 }
 
@@ -206,6 +207,7 @@ FemEstimate fem_accuracy_estimate(const FemAccuracyPair *pair, const FemModel *m
   const FemSceneDef *scene = model->scene;
   double depth = 2 * pair->energy / pair->estimated, tolerance = fem_model_position_tolerance(model);
   FemEstimate estimate = {.give = pair->with / (pair->with + pair->elastic[0] + pair->elastic[1]),
+                          .give_time = pair->full_time,
                           .rim = pair->rim,
                           .depth = depth,
                           .depth_over_edge = depth / pair->edge,

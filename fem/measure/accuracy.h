@@ -48,10 +48,11 @@ typedef struct FemAccuracyPair {
   double elastic[2]; // E_a, E_b of the state in which most was stored [J]
   double with;       // U of that state [J]
   double stored;     // U + E_a + E_b of that state [J]
+  double full_time;  // when that was [s]
   double edge;       // mean edge of the elements that take part [m]
   double rim;        // NaN: the potential is not `field`
 } FemAccuracyPair;
-enum { FEM_ACCURACY_KEPT = 20 };
+enum { FEM_ACCURACY_KEPT = 21 };
 
 typedef struct FemAccuracy {
   int count;
@@ -80,6 +81,7 @@ void fem_accuracy_accept(FemAccuracy *accuracy);
 // What follows for one pair.
 typedef struct FemEstimate {
   double give, rim, depth_over_edge, tolerance_over_depth, elements_across; // NaN: not known
+  double give_time;                                                         // when it was so [s]
   double depth;                                                             // D [m]
   double stiffness;                                                         // c or κ of the pair
   double stiffness_for; // that would bring give and rim to 1 %; NaN: none would, or the depth is no more

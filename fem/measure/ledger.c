@@ -98,6 +98,7 @@ static const double ONE_WAY = 0.5;
 
 static void record_estimate(const FemEstimate *estimate, Record *record) {
   record_number(record, "give", estimate->give);
+  record_number(record, "give_time", estimate->give_time);
   record_number(record, "rim", estimate->rim);
   record_number(record, "depth_over_edge", estimate->depth_over_edge);
   record_number(record, "tolerance_over_depth", estimate->tolerance_over_depth);
@@ -192,8 +193,8 @@ bool fem_ledger_describe(const FemLedger *ledger, int rank, char *text, size_t s
   describe_force(pair, &estimate, text, size, &used);
   text_append(text, size, &used,
               "\nmean overlap %.2g m then\n"
-              "%.3g %% of the total deformation is overlap",
-              estimate.depth, 100 * estimate.give);
+              "%.3g %% of the total deformation is overlap, at t = %.4g s",
+              estimate.depth, 100 * estimate.give, estimate.give_time);
   if (estimate.tolerance_over_depth > 1)
     text_append(text, size, &used, "\nthe overlap is below the resolution of time.tolerance");
   if (estimate.rim > NOTHING)

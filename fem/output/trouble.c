@@ -205,7 +205,10 @@ const char *fem_trouble_what(FemTroubleKind kind) {
   return kinds[kind].what;
 }
 
-const char *fem_trouble_advice(FemTroubleKind kind) {
+const char *fem_trouble_advice(FemTroubleKind kind, bool is_static) {
+  // What a static scene errs by is the work along its steps of load.
+  if (is_static && kind == FEM_TROUBLE_ENERGY)
+    return "try shorter steps of load: more output.frames, or a shorter time.max_step";
   return kinds[kind].advice;
 }
 
@@ -214,7 +217,8 @@ void fem_trouble_place(const FemTrouble *trouble, const FemModel *model, FemTrou
   int first = trouble->of[kind].first;
   double time = trouble->of[kind].first_time;
   if (kind == FEM_TROUBLE_ENERGY) {
-    snprintf(text, size, "first at t = %.6g s, %lld times in all", time, trouble->of[kind].events);
+    long long times = trouble->of[kind].events;
+    snprintf(text, size, "first at t = %.6g s, %lld %s in all", time, times, times > 1 ? "times" : "time");
     return;
   }
   if (kind == FEM_TROUBLE_PASSED) {
@@ -233,7 +237,8 @@ void fem_trouble_describe(const FemTrouble *trouble, const FemModel *model, FemT
                           size_t size) {
   char place[256];
   fem_trouble_place(trouble, model, kind, place, sizeof place);
-  snprintf(text, size, "%s: %s (%s)", kinds[kind].what, place, kinds[kind].advice);
+  snprintf(text, size, "%s: %s (%s)", kinds[kind].what, place,
+           fem_trouble_advice(kind, model->scene->is_static));
 }
 
 // A hint for what is seen in the refused state: elements inside out are not held by any contact.

@@ -84,7 +84,7 @@ bool fem_trouble_add(FemTrouble *trouble, double time, const FemTroubleState *st
 
 // What a kind of trouble is, and what to do against it.
 const char *fem_trouble_what(FemTroubleKind kind);
-const char *fem_trouble_advice(FemTroubleKind kind);
+const char *fem_trouble_advice(FemTroubleKind kind, bool is_static);
 // When and where it began: "first at t = 0.1 s, vertex 12 of body 'ball'; 3 at once at most, in 7 steps".
 void fem_trouble_place(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
                        size_t size);

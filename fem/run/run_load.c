@@ -9,12 +9,14 @@
 #include "fem/run/run_frames.h"
 #include "fem/run/run_watch.h"
 
-// The work of a step of load, and how far it may be wrong; that of obstacles the audit adds itself.
+// The work of a step of load, and how far it may be wrong; that of obstacles and of loads the audit adds
+// itself.
 static void keep_load_step(FemRunState *run, double step, double work_before, const FemEnergy *energy) {
   const FemStatics *statics = &run->statics;
   run->audit.driven_work += statics->driven_work - work_before;
   fem_audit_load_step(&run->audit, step, statics->work_begin + step * run->audit.driven_power,
-                      statics->work_end + step * energy->driven_power, statics->work_left);
+                      statics->work_end + step * energy->driven_power + statics->load_change,
+                      statics->work_left);
 }
 
 // Of obstacles without elements at the equilibrium of a step of load, at a time beside it: where a motion has

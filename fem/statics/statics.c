@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "fem/effect/gravity.h"
+#include "fem/effect/loads.h"
 #include "fem/statics/descent.h"
 #include "fem/statics/kinsol.h"
 
@@ -282,6 +283,7 @@ Status fem_statics_step(FemStatics *statics, double from, double to, double *u) 
     statics->residual = fem_equilibrium_largest(statics->force, n);
     statics->steps++;
     statics->loose += statics->residual > statics->tolerance * statics->force_scale;
+    TRY(fem_effect_loads_change(equilibrium->system, equilibrium->state, &statics->load_change));
     keep_work(statics, to);
     TRY(watch_stability(statics, from, to, u));
     return fem_system_accept(equilibrium->system, equilibrium->state, 0);

@@ -35,6 +35,7 @@ typedef struct FemStatics {
   double driven_work;                 // of driven vertices, of increasing gravity, and of what holds a body
                                       // that begins out of equilibrium, so far [J]
   double work_begin, work_end;        // of the last step, by the forces at its begin and end [J]
+  double load_change;                 // of the last step (fem/effect/loads.h) [J]
   double work_left;                   // of the unbalanced forces, along the longest driven displacement [J]
   double residual;                    // largest force on an unknown at the end of the last step [N]
   long long steps, newton_iterations, relaxation_steps, halvings;

@@ -56,9 +56,9 @@ typedef struct FemAudit {
 void fem_audit_begin(FemAudit *audit, double time, const FemEnergy *energy, double floor);
 
 // Before the audit of a static scene's next state. `begin` and `end` [J]: the work that the forces at the
-// begin and at the end of a load step, `step` long, would do along the displacements of all that is driven.
-// The work is their mean (trapezoidal rule), exact where force is proportional to displacement. Its
-// uncertainty, `open`, is the difference of this step's change from that of the step before, plus
+// begin and at the end of a load step, `step` long, would do along the displacements of all that is driven
+// and loaded. The work is their mean (trapezoidal rule), exact where force is proportional to displacement.
+// Its uncertainty, `open`, is the difference of this step's change from that of the step before, plus
 // `unbalanced`. Without a step before the whole change counts, since contact or slip may begin within the
 // step. `unbalanced` is the work of the forces that equilibrium leaves [J]. A gain below `open` is not
 // reported.

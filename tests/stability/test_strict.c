@@ -54,6 +54,7 @@ START_TEST(energy_out_of_nothing_is_an_event) {
   ck_assert_int_eq(seen, 1);
   fem_run_describe_trouble(&run.result, &run.model, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "energy out of nothing"));
+  ck_assert_ptr_nonnull(strstr(text, " s, 1 time "));
   scene_close(&run);
 }
 END_TEST

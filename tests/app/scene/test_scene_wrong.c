@@ -64,6 +64,9 @@ static const Wrong wrong[] = {
      "s.yaml:2:43: bodies[0].material needs 'density', for example density: 1000"},
     {TIME "bodies: []\n",
      "s.yaml:2:9: bodies: expected a list of mappings, found a list of 0; give at least one"},
+    {TIME "bodies:\n  - {name: a, mesh: a.msh, material: {young: 1,000,000, poisson: 0}}\n",
+     "s.yaml:3:48: a number, '000', where a key must be; numbers have no commas: write 1000000, 0.5"},
+    {TIME BODY "contact: {friction: 0,5}\n", "s.yaml:3:23: a number, '5', where a key must be"},
     {TIME BODY "contact:\n", "s.yaml:3:1: there is no value after 'contact:'; write '{}' for the defaults"},
     {TIME BODY "effects: {gravity: }\n", "s.yaml:3:11: there is no value after 'gravity:'; write a value"},
     // Types.

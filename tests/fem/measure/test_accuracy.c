@@ -130,6 +130,7 @@ static double give_beside(double pull) {
                                   "time.end=2", "output.frames=8", NULL});
   const Record *contact = record_at(record_find(run.result.account.record, "contacts"), 0);
   double give = record_find_number(record_find(contact, "estimate"), "give");
+  ck_assert_double_eq(record_find_number(record_find(contact, "estimate"), "give_time"), 1);
   scene_close(&run);
   return give;
 }
