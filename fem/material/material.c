@@ -41,15 +41,16 @@ const char *fem_material_limit(FemMaterialLaw law) {
   case FEM_MATERIAL_STVK:
     return "St. Venant-Kirchhoff's law bears the largest pressure at 0.58 of a length, where ever less "
            "resists more compression; take law: neo_hookean or neo_hookean_log, or a smaller load";
+  case FEM_MATERIAL_LINEAR:
   case FEM_MATERIAL_COROTATIONAL:
-    return "the corotational law resists compression by no more than a spring, to nothing left and beyond; "
-           "take law: neo_hookean_log, or a smaller load";
+    return "its law resists compression by no more than a spring, to nothing left and beyond; take law: "
+           "neo_hookean_log, or a smaller load";
   case FEM_MATERIAL_NEO_HOOKEAN_LOG:
     return "its law bears any pressure, so the mesh folds: refine it there, or take smaller steps of load "
            "(time.max_step)";
   default:
     return "the pressure that its law bears has an end as the volume vanishes; take law: neo_hookean_log, a "
-           "finer mesh, or a smaller load";
+           "finer mesh, or a smaller load or impact";
   }
 }
 

@@ -16,8 +16,7 @@ static const double COVERED = 0.999, DEEP = 0.5, PULL = 0.5, FORCE_FLOOR = 1e-3,
 static const struct {
   const char *name, *what, *unit, *advice;
 } kinds[FEM_TROUBLE_KIND_COUNT] = {
-    {"inverted", "inverted elements", "element",
-     "refine the mesh there, load more slowly, or write law: neo_hookean_log"},
+    {"inverted", "inverted elements", "element", NULL}, // by their law
     {"enclosed", "elements wholly inside another body, which nothing pushes out", "element",
      "try a larger contact.stiffness, a finer mesh or a shorter time.max_step, and bodies apart at the "
      "start"},
@@ -205,9 +204,10 @@ const char *fem_trouble_what(FemTroubleKind kind) {
   return kinds[kind].what;
 }
 
-const char *fem_trouble_advice(FemTroubleKind kind, bool is_static) {
+const char *fem_trouble_advice(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind) {
+  if (kind == FEM_TROUBLE_INVERTED) return fem_material_limit(fem_model_law(model, trouble->of[kind].first));
   // What a static scene errs by is the work along its steps of load.
-  if (is_static && kind == FEM_TROUBLE_ENERGY)
+  if (model->scene->is_static && kind == FEM_TROUBLE_ENERGY)
     return "try shorter steps of load: more output.frames, or a shorter time.max_step";
   return kinds[kind].advice;
 }
@@ -237,8 +237,7 @@ void fem_trouble_describe(const FemTrouble *trouble, const FemModel *model, FemT
                           size_t size) {
   char place[256];
   fem_trouble_place(trouble, model, kind, place, sizeof place);
-  snprintf(text, size, "%s: %s (%s)", kinds[kind].what, place,
-           fem_trouble_advice(kind, model->scene->is_static));
+  snprintf(text, size, "%s: %s (%s)", kinds[kind].what, place, fem_trouble_advice(trouble, model, kind));
 }
 
 // A hint for what is seen in the refused state: elements inside out are not held by any contact.
@@ -249,9 +248,9 @@ static void describe_remedy(const FemTrouble *trouble, const FemModel *model, co
   if (body >= 0 && (body == trouble->passed[0] || body == trouble->passed[1])) {
     snprintf(
         text, size,
-        "%d elements are inverted, element %d of body '%s' first, and contact holds no inverted element: "
-        "refine that body's mesh, or write law: neo_hookean_log",
-        found->count[FEM_TROUBLE_INVERTED], inverted, body_of_element(model, inverted));
+        "%d elements are inverted, element %d of body '%s' first, and contact holds no inverted element: %s",
+        found->count[FEM_TROUBLE_INVERTED], inverted, body_of_element(model, inverted),
+        fem_material_limit(fem_model_law(model, inverted)));
     return;
   }
   if (!(stiffness > 0)) {

@@ -82,9 +82,9 @@ FemTrouble fem_trouble_begin(const FemModel *model);
 // Adds an accepted state. Returns whether it has a kind of trouble that the state before it has not.
 bool fem_trouble_add(FemTrouble *trouble, double time, const FemTroubleState *state);
 
-// What a kind of trouble is, and what to do against it.
+// What a kind of trouble is, and what to do against it; of inverted elements by the law of the first one.
 const char *fem_trouble_what(FemTroubleKind kind);
-const char *fem_trouble_advice(FemTroubleKind kind, bool is_static);
+const char *fem_trouble_advice(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind);
 // When and where it began: "first at t = 0.1 s, vertex 12 of body 'ball'; 3 at once at most, in 7 steps".
 void fem_trouble_place(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,
                        size_t size);

@@ -142,7 +142,7 @@ void fem_run_describe_trouble(const FemRunResult *result, const FemModel *model,
     if (trouble->of[k].steps == 0) continue;
     fem_trouble_place(trouble, model, (FemTroubleKind)k, place, sizeof place);
     append_trouble(text, size, &used, fem_trouble_what((FemTroubleKind)k), place,
-                   fem_trouble_advice((FemTroubleKind)k, result->is_static));
+                   fem_trouble_advice(trouble, model, (FemTroubleKind)k));
   }
   char place[256];
   if (result->inside.count > 0) {

@@ -105,11 +105,30 @@ START_TEST(steps_and_events_are_counted_apart) {
   ck_assert_int_eq(trouble.of[FEM_TROUBLE_INVERTED].events, 2);
   ck_assert_int_eq(trouble.of[FEM_TROUBLE_INVERTED].most, 3);
   ck_assert_int_eq(trouble.of[FEM_TROUBLE_INVERTED].first, 1);
-  char text[256];
+  char text[512];
   fem_trouble_describe(&trouble, &looked.run.model, FEM_TROUBLE_INVERTED, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "t = 0.1 s"));
   ck_assert_ptr_nonnull(strstr(text, "body 'upper'"));
   close_two(&looked);
+}
+END_TEST
+
+START_TEST(against_inversion_the_law_decides_what_helps) {
+  const char *const laws[] = {"neo_hookean", "neo_hookean_log", "linear"}, *const advice[] = {
+                                                                               "take law: neo_hookean_log",
+                                                                               "refine it there",
+                                                                               "no more than a spring"};
+  for (int k = 0; k < 3; k++) {
+    SceneRun run;
+    char set[64], text[512];
+    snprintf(set, sizeof set, "bodies.upper.material.law=%s", laws[k]);
+    scene_open(&run, "single_tets", (const char *const[]){set, NULL});
+    FemTrouble trouble = fem_trouble_begin(&run.model);
+    fem_trouble_add(&trouble, 0.1, &(FemTroubleState){.count = {1}, .first = {1}});
+    fem_trouble_describe(&trouble, &run.model, FEM_TROUBLE_INVERTED, text, sizeof text);
+    ck_assert_ptr_nonnull(strstr(text, advice[k]));
+    scene_close(&run);
+  }
 }
 END_TEST
 
@@ -155,6 +174,7 @@ int main(void) {
   tcase_add_test(cases, inverted_and_enclosed_elements_are_marked);
   tcase_add_test(cases, a_contact_force_that_pulls_is_a_wrong_way_push);
   tcase_add_test(cases, steps_and_events_are_counted_apart);
+  tcase_add_test(cases, against_inversion_the_law_decides_what_helps);
   tcase_add_test(cases, a_sliver_is_counted_at_rest);
   tcase_add_test(cases, the_last_line_says_what_struck_or_that_nothing_did);
   return suite_run("trouble", cases, 60);
