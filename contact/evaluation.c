@@ -140,7 +140,7 @@ static Status sift_by_boxes(ContactEvaluation *evaluation, const ContactLayout *
   if (!memory_reserve((void **)&evaluation->is_kept, &evaluation->kept_capacity, (size_t)count, 1))
     return status_no_memory("candidate pairs");
   contact_candidates_bound(candidates, layout, positions, evaluation->boxes);
-#pragma omp parallel for schedule(static) reduction(+ : kept) if (count > 8192)
+#pragma omp parallel for schedule(static) reduction(+ : kept) if (count > 16384)
   for (int k = 0; k < count; k++) {
     const int *cells = candidates->pairs[k].cells;
     evaluation->is_kept[k] =
@@ -182,7 +182,7 @@ static void move_overlap(ContactEvaluation *evaluation, bool has_field, int from
 // Marks the listed pairs but those that a face separates for certain, `mesh_count` of them of two meshes.
 static void find_faces_apart(ContactEvaluation *evaluation, const ContactLayout *layout, int mesh_count,
                              const double *positions) {
-#pragma omp parallel for schedule(static) if (mesh_count > 512)
+#pragma omp parallel for schedule(dynamic) if (mesh_count > 2048)
   for (int begin = 0; begin < mesh_count; begin += PORTION_SIZE) {
     bool is_apart[PORTION_SIZE];
     double coordinates[24 * PORTION_SIZE]; // most are not asked for again
@@ -211,7 +211,7 @@ static Status sift_by_faces(ContactEvaluation *evaluation, const ContactLayout *
   }
   evaluation->pair_count = kept;
   TRY(reserve(evaluation, layout, kept));
-#pragma omp parallel for schedule(static) if (kept > 2048)
+#pragma omp parallel for schedule(static) if (kept > 8192)
   for (int k = 0; k < kept; k++)
     contact_layout_gather_pair(layout, &evaluation->pairs[k], positions,
                                evaluation->coordinates + 24 * (size_t)k);
@@ -339,7 +339,7 @@ static Status overlap_meshes(ContactEvaluation *evaluation, const ContactLayout 
 }
 
 static void overlap_shapes(ContactEvaluation *evaluation, const ContactLayout *layout, double time) {
-#pragma omp parallel for schedule(static) if (evaluation->pair_count - evaluation->mesh_pair_count > 512)
+#pragma omp parallel for schedule(dynamic, 64) if (evaluation->pair_count - evaluation->mesh_pair_count > 512)
   for (int k = evaluation->mesh_pair_count; k < evaluation->pair_count; k++) {
     const ContactShape *shape = &layout->def.shapes[layout->interfaces[evaluation->pairs[k].interface].shape];
     const double *tet = evaluation->coordinates + 24 * (size_t)k;
@@ -434,7 +434,7 @@ static void summarise(ContactEvaluation *evaluation, const ContactLayout *layout
 // By the depth field: energies, and the forces on the pairs' own vertices.
 static Status press_by_field(ContactEvaluation *evaluation, const ContactLayout *layout) {
   int bad = INT_MAX;
-#pragma omp parallel for schedule(static) reduction(min : bad) if (evaluation->pair_count > 256)
+#pragma omp parallel for schedule(dynamic, 32) reduction(min : bad) if (evaluation->mesh_pair_count > 512)
   for (int k = 0; k < evaluation->pair_count; k++) {
     size_t at = (size_t)k;
     if (k < evaluation->mesh_pair_count)
@@ -511,7 +511,7 @@ static void join_slopes(const double *gradients, const double *rows, size_t coun
 }
 
 static void find_slopes_by_clipping(ContactEvaluation *evaluation, const ContactLayout *layout) {
-#pragma omp parallel for schedule(static) if (evaluation->mesh_pair_count > 64)
+#pragma omp parallel for schedule(dynamic, 8) if (evaluation->mesh_pair_count > 64)
   for (int k = 0; k < evaluation->mesh_pair_count; k++)
     contact_field_slopes(layout, &evaluation->pairs[k], evaluation->coordinates + 24 * (size_t)k,
                          &evaluation->fields[k], evaluation->slopes + 96 * (size_t)k);

@@ -11,7 +11,10 @@
 #include "contact/shape/shape.h"
 #include "contact/volume/volume.h"
 
-enum { PORTION_SIZE = 512 }; // pairs whose matrices are held at once
+enum { PORTION_SIZE = 16 }; // pairs whose matrices a thread holds at once
+// Fewer are done before another thread is awake.
+enum { FEW_PAIRS = 64 };
+enum { MATRIX_SIZE = OVERLAP_PAIR_SIZE * OVERLAP_PAIR_SIZE };
 
 // ---- The vertices of an element.
 
@@ -57,20 +60,17 @@ Status contact_stiffness_create(ContactStiffness *stiffness, const ContactLayout
   *stiffness = (ContactStiffness){0};
   stiffness->most = most_of(layout);
   size_t width = 3 * (size_t)stiffness->most;
-  stiffness->matrices = memory_zeroed((size_t)PORTION_SIZE * 576, sizeof(double));
   stiffness->vertices = memory_zeroed((size_t)stiffness->most, sizeof(int));
   stiffness->place = memory_zeroed((size_t)layout->def.vertex_count, sizeof(int));
   stiffness->sum = memory_zeroed(width * width, sizeof(double));
   stiffness->dense = memory_zeroed(width * width, sizeof(double));
-  bool fits =
-      stiffness->matrices && stiffness->vertices && stiffness->place && stiffness->sum && stiffness->dense;
+  bool fits = stiffness->vertices && stiffness->place && stiffness->sum && stiffness->dense;
   return fits ? STATUS_OK : status_no_memory("contact stiffness");
 }
 
 void contact_stiffness_destroy(ContactStiffness *stiffness) {
   memory_free(stiffness->near_pairs);
   memory_free(stiffness->order);
-  memory_free(stiffness->matrices);
   memory_free(stiffness->vertices);
   memory_free(stiffness->place);
   memory_free(stiffness->sum);
@@ -79,9 +79,8 @@ void contact_stiffness_destroy(ContactStiffness *stiffness) {
 }
 
 size_t contact_stiffness_bytes(const ContactStiffness *stiffness) {
-  const void *const arrays[] = {stiffness->near_pairs, stiffness->order, stiffness->matrices,
-                                stiffness->vertices,   stiffness->place, stiffness->sum,
-                                stiffness->dense};
+  const void *const arrays[] = {stiffness->near_pairs, stiffness->order, stiffness->vertices,
+                                stiffness->place,      stiffness->sum,   stiffness->dense};
   return memory_held_by(sizeof arrays / sizeof *arrays, arrays);
 }
 
@@ -180,22 +179,31 @@ static void bend(const ContactLayout *layout, const ContactEvaluation *evaluatio
   contact_field_bend(layout, pair, coordinates, matrix);
 }
 
+static void hand_on_portion(ContactStiffness *stiffness, const ContactLayout *layout, int first, int end,
+                            const ContactPair *pairs, const double *matrices,
+                            const ContactStiffnessSink *sink) {
+  const ContactStiffnessKey *order = stiffness->order;
+  for (int k = first; k < end; k++) {
+    if (k > 0 && !are_alike(&order[k], &order[k - 1])) hand_on(stiffness, sink);
+    add_pair(stiffness, layout, &pairs[order[k].pair], matrices + MATRIX_SIZE * (size_t)(k - first));
+  }
+}
+
+// Portions are handed on in their order, each while another thread finds the next one's matrices.
 Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *layout,
                              const ContactEvaluation *evaluation, int interface,
                              const ContactStiffnessWay *way, const ContactStiffnessSink *sink) {
   int count;
   TRY(order_pairs(stiffness, layout, interface, evaluation->pair_count, evaluation->pairs, &count));
   const ContactStiffnessKey *order = stiffness->order;
+#pragma omp parallel for ordered schedule(dynamic) if (count > FEW_PAIRS)
   for (int first = 0; first < count; first += PORTION_SIZE) {
+    double matrices[MATRIX_SIZE * PORTION_SIZE];
     int end = first + PORTION_SIZE < count ? first + PORTION_SIZE : count;
-#pragma omp parallel for schedule(static) if (end - first > 64)
     for (int k = first; k < end; k++)
-      bend(layout, evaluation, order[k].pair, way, stiffness->matrices + 576 * (size_t)(k - first));
-    for (int k = first; k < end; k++) {
-      if (k > 0 && !are_alike(&order[k], &order[k - 1])) hand_on(stiffness, sink);
-      add_pair(stiffness, layout, &evaluation->pairs[order[k].pair],
-               stiffness->matrices + 576 * (size_t)(k - first));
-    }
+      bend(layout, evaluation, order[k].pair, way, matrices + MATRIX_SIZE * (size_t)(k - first));
+#pragma omp ordered
+    hand_on_portion(stiffness, layout, first, end, evaluation->pairs, matrices, sink);
   }
   hand_on(stiffness, sink);
   return STATUS_OK;

@@ -30,7 +30,6 @@ typedef struct ContactStiffness {
   size_t near_capacity;
   ContactStiffnessKey *order; // of the pairs
   size_t order_capacity;
-  double *matrices; // of a portion of the pairs                     (PORTION, 24, 24)
   // Two elements being summed.
   int most; // vertices that two elements have at most
   int count;

@@ -258,7 +258,7 @@ void contact_mesh_destroy(ContactMesh *mesh) {
 
 void contact_mesh_place(const ContactMesh *mesh, const ContactSystemDef *def, double *positions) {
   int count = mesh->position_count - def->vertex_count;
-#pragma omp parallel for schedule(static) if (count > 1024)
+#pragma omp parallel for schedule(static) if (count > 8192)
   for (int u = 0; u < count; u++) {
     const ContactVirtual *virtual = &mesh->virtuals[u];
     const int *vertices = def->tets[virtual->tet];

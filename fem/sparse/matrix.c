@@ -266,9 +266,9 @@ void fem_matrix_multiply(const FemMatrix *matrix, const double *x, double *y) {
   const FemMatrixBlocks *blocks = matrix->blocks;
 #pragma omp parallel if (matrix->entry_count > FEW_ENTRIES)
   {
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic)
     for (int p = 0; p < blocks->piece_count; p++) spread_piece(matrix, p, x, y);
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic)
     for (int p = 0; p < blocks->piece_count; p++) take_gifts(blocks, p, y);
   }
 }

@@ -105,7 +105,7 @@ void fem_assembly_add_forces(const FemAssembly *assembly, const FemState *state,
     const FemPacks *packs = &assembly->packs[k];
 #pragma omp parallel if (work_of(packs, QUADRATIC_FORCES) > FEW_FORCES)
     for (int colour = 0; colour < packs->colour_count; colour++) {
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic)
       for (int chunk = packs->colour_begin[colour]; chunk < packs->colour_begin[colour + 1]; chunk++)
         add_chunk_forces(assembly, packs, state, kernels, chunk, force);
     }
@@ -169,7 +169,7 @@ Status fem_assembly_add_matrices(FemAssembly *assembly, const FemState *state,
     const FemPacks *packs = &assembly->packs[k];
 #pragma omp parallel if (work_of(packs, QUADRATIC_MATRICES) > FEW_MATRICES)
     for (int colour = 0; colour < packs->colour_count; colour++) {
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic)
       for (int chunk = packs->colour_begin[colour]; chunk < packs->colour_begin[colour + 1]; chunk++)
         add_chunk_matrices(assembly, packs, state, kernels, scales, chunk, matrix);
     }
@@ -195,7 +195,7 @@ static double sum_chunk(const FemAssembly *assembly, const FemPacks *packs, cons
 
 static void sum_chunks(FemAssembly *assembly, const FemPacks *packs, const FemState *state,
                        const FemAssemblyKernels *kernels, double *sums) {
-#pragma omp parallel for schedule(static) if (work_of(packs, QUADRATIC_FORCES) > FEW_FORCES)
+#pragma omp parallel for schedule(dynamic) if (work_of(packs, QUADRATIC_FORCES) > FEW_FORCES)
   for (int chunk = 0; chunk < packs->chunk_count; chunk++)
     sums[chunk] = sum_chunk(assembly, packs, state, kernels, chunk);
 }
