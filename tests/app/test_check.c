@@ -81,6 +81,18 @@ START_TEST(a_mesh_in_mm_among_metres_is_told) {
 }
 END_TEST
 
+// Nothing else is there to compare with; in tonnes and mm a density is far below 1.
+START_TEST(a_scene_in_mm_is_told) {
+  const char *const huge = "--set bodies.lower.place.scale=1000 --set bodies.upper.place.scale=1000";
+  char tonnes[512];
+  snprintf(tonnes, sizeof tonnes,
+           "%s --set bodies.lower.material.density=1e-9 --set bodies.upper.material.density=1e-9", huge);
+  ck_says("patch", huge,
+          " m long, and lengths are in m; if its mesh is in mm, it needs place: {scale: 0.001}", true);
+  ck_says("patch", tonnes, "in mm", false);
+}
+END_TEST
+
 // Blocks of 5 cm: of 11 points 1 cm apart, and of 21, those from z = 0 to 5 cm are in the lower one.
 START_TEST(lines_are_told_with_how_many_points_they_have) {
   const char *const lines =
@@ -105,6 +117,7 @@ int main(void) {
   tcase_add_test(cases, a_curved_body_presses_harder_than_a_flat_one);
   tcase_add_test(cases, an_overlap_model_without_scale_is_told);
   tcase_add_test(cases, a_mesh_in_mm_among_metres_is_told);
+  tcase_add_test(cases, a_scene_in_mm_is_told);
   tcase_add_test(cases, lines_are_told_with_how_many_points_they_have);
   return suite_run("check", cases, 30);
 }

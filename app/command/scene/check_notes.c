@@ -18,6 +18,8 @@ static const double ENOUGH_LAYERS = 3.5;
 static const double CRUSHED = 0.5;
 // Of the sizes of two bodies: from which on one of them may be in mm, the other in m.
 static const double FAR_LARGER = 300;
+// A body of this size may be in mm [m], unless its density says that the scene is in tonnes and mm [kg/m³].
+static const double HUGE_SIDE = 50, OF_TONNES = 1;
 
 static void note(AppCheckNotes *notes, bool is_true, const char *text) {
   if (is_true && notes->count < APP_CHECK_NOTES) notes->texts[notes->count++] = text;
@@ -139,7 +141,14 @@ static double largest_side(const FemModel *model, const FemModelBody *body) {
   return fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2]));
 }
 
-// A mesh in mm among others in m.
+static double least_density(const FemModel *model, const FemModelBody *body) {
+  double least = INFINITY;
+  for (int p = body->part_begin; p < body->part_end; p++)
+    least = fmin(least, model->parts[p].material.density);
+  return least;
+}
+
+// A mesh in mm among others in m, or a single one.
 static void note_units(const FemModel *model, AppCheckNotes *notes) {
   int least = 0, most = 0;
   for (int b = 0; b < model->body_count; b++) {
@@ -150,7 +159,15 @@ static void note_units(const FemModel *model, AppCheckNotes *notes) {
   snprintf(notes->far_larger, sizeof notes->far_larger,
            "'%s' is %.0f times as large as '%s'; if the mesh of one is in mm, it needs place: {scale: 0.001}",
            model->bodies[most].name, ratio, model->bodies[least].name);
-  note(notes, ratio > FAR_LARGER, notes->far_larger);
+  bool is_far_larger = ratio > FAR_LARGER;
+  double side = largest_side(model, &model->bodies[most]);
+  bool is_huge = side >= HUGE_SIDE && least_density(model, &model->bodies[most]) > OF_TONNES;
+  if (is_huge && !is_far_larger)
+    snprintf(
+        notes->far_larger, sizeof notes->far_larger,
+        "'%s' is %.3g m long, and lengths are in m; if its mesh is in mm, it needs place: {scale: 0.001}",
+        model->bodies[most].name, side);
+  note(notes, is_far_larger || is_huge, notes->far_larger);
 }
 
 // Lines that miss most of their body.
