@@ -155,11 +155,24 @@ static int write_energies(FILE *script, const History *histories, int run_count,
   return count;
 }
 
-static void write_steps(FILE *script, int run_count, const char *const *labels) {
+// A static run has no steps of time.
+static bool has_steps(const History *histories, int run_count) {
+  bool has = false;
+  for (int r = 0; r < run_count; r++) has = has || is_alive(&histories[r], "step_s");
+  return has;
+}
+
+static void write_steps(FILE *script, const History *histories, int run_count, const char *const *labels) {
   int count = 0;
   for (int r = 0; r < run_count; r++)
-    add_curve(script, &count, r, run_count, "column('step_s') > 0 ? column('step_s') : NaN", "step",
-              labels[r]);
+    if (is_alive(&histories[r], "step_s"))
+      add_curve(script, &count, r, run_count, "column('step_s') > 0 ? column('step_s') : NaN", "step",
+                labels[r]);
+}
+
+// A panel without a curve: gnuplot ends with an error where it has no number to draw.
+static void write_nothing(FILE *script) {
+  fputs("plot $run0 using (column('time_s')):(0) with lines lc rgb 'white' notitle", script);
 }
 
 static void write_data(FILE *script, const AppReportRun *runs, int run_count) {
@@ -171,12 +184,16 @@ static void write_data(FILE *script, const AppReportRun *runs, int run_count) {
 }
 
 static void write_panels(FILE *script, const History *histories, int run_count, const char *const *labels) {
-  fputs("set multiplot layout 3,1\nset ylabel 'contact force [N]'\n", script);
-  if (write_forces(script, histories, run_count, labels) == 0) fputs("plot NaN notitle", script);
-  fputs("\nset ylabel 'energy [J]'\n", script);
-  if (write_energies(script, histories, run_count, labels) == 0) fputs("plot NaN notitle", script);
-  fputs("\nset ylabel 'step [s]'\nset xlabel 'time [s]'\nset logscale y\nset format y '10^{%T}'\n", script);
-  write_steps(script, run_count, labels);
+  static const char time[] = "\nset xlabel 'time [s]'\n";
+  const bool moves = has_steps(histories, run_count);
+  fprintf(script, "set multiplot layout %d,1\nset ylabel 'contact force [N]'\n", moves ? 3 : 2);
+  if (write_forces(script, histories, run_count, labels) == 0) write_nothing(script);
+  fprintf(script, "\nset ylabel 'energy [J]'%s", moves ? "\n" : time);
+  if (write_energies(script, histories, run_count, labels) == 0) write_nothing(script);
+  if (moves) {
+    fprintf(script, "\nset ylabel 'step [s]'%sset logscale y\nset format y '10^{%%T}'\n", time);
+    write_steps(script, histories, run_count, labels);
+  }
   fputs("\nunset multiplot\n", script);
 }
 
@@ -208,7 +225,7 @@ Status app_plot_history(FILE *script, const char *picture, const AppReportRun *r
     fprintf(script,
             "set border 3\nset tics nomirror\nset grid lc rgb '#e4e4e4' lt 1 lw 0.5\n"
             "set key at graph 1.03,1 left top Left reverse noenhanced font small samplen 2\n"
-            "set lmargin 11\nset rmargin %d\n",
+            "set lmargin 13\nset rmargin %d\n",
             margin);
     write_panels(script, histories, run_count, labels);
   }

@@ -122,6 +122,22 @@ START_TEST(a_picture_that_gnuplot_does_not_end_is_none) {
 }
 END_TEST
 
+// A static run has no steps, a body that flies no forces, one that rests no energy.
+START_TEST(gnuplot_draws_a_history_of_which_parts_are_nothing) {
+  static char texts[][160] = {
+      "time_s,elastic_J,step_s,force_a_b_x_N,force_a_b_y_N,force_a_b_z_N\n0,0,0,0,0,0\n1,2,0,1,0,0\n",
+      "time_s,kinetic_J,step_s\n0,1,0\n1,2,0.1\n", "time_s,kinetic_J,step_s\n0,0,0\n1,0,0\n"};
+  for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
+    AppReportRun run = {.directory = name_a, .history = texts[k]};
+    ck_assert_ok(write_history(&run, 1));
+    ck_assert_ok(app_gnuplot_run(script, picture));
+    char *text = read_script();
+    ck_assert_int_eq(count_of(text, "\"step\""), k == 1);
+    memory_free(text);
+  }
+}
+END_TEST
+
 START_TEST(gnuplot_draws_a_history) {
   AppReportRun run = {.directory = name_a, .history = history};
   struct stat info;
@@ -141,5 +157,6 @@ int main(void) {
   tcase_add_test(test_case, a_damaged_history_is_refused);
   tcase_add_test(test_case, a_picture_that_gnuplot_does_not_end_is_none);
   tcase_add_test(test_case, gnuplot_draws_a_history);
+  tcase_add_test(test_case, gnuplot_draws_a_history_of_which_parts_are_nothing);
   return suite_run("plot", test_case, 20);
 }
