@@ -49,8 +49,9 @@ const char *fem_material_limit(FemMaterialLaw law) {
     return "its law bears any pressure, so the mesh folds: refine it there, or take smaller steps of load "
            "(time.max_step)";
   default:
-    return "the pressure that its law bears has an end as the volume vanishes; take law: neo_hookean_log, a "
-           "finer mesh, or a smaller load or impact";
+    return "the pressure that its law bears has an end as the volume vanishes; take law: neo_hookean_log, or "
+           "a "
+           "smaller load or impact";
   }
 }
 
