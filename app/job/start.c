@@ -137,9 +137,10 @@ static Status check_bodies(const char *folder, const Record *origin, const Recor
   if (!was)
     return status_fail(STATUS_INPUT, "start: %s: its end state does not say of which scene it is", folder);
   if (record_count(was) != record_count(is))
-    return status_fail(STATUS_INPUT,
-                       "start: %s: the run there has %d bodies, this scene has %d: they must be the same",
-                       folder, record_count(was), record_count(is));
+    return status_fail(
+        STATUS_INPUT,
+        "start: %s: the run there and this scene must have the same bodies, but their numbers are %d and %d",
+        folder, record_count(was), record_count(is));
   for (int b = 0; b < record_count(is); b++)
     TRY(check_body(folder, record_at(was, b), record_at(is, b), record_find(origin, "shapes"),
                    record_find(inputs, "shapes")));

@@ -229,8 +229,9 @@ void fem_trouble_place(const FemTrouble *trouble, const FemModel *model, FemTrou
   }
   const char *body =
       kind == FEM_TROUBLE_WRONG_WAY ? fem_model_body_name(model, first) : body_of_element(model, first);
-  snprintf(text, size, "first at t = %.6g s, %s %d of body '%s'; %d at once at most, in %lld steps", time,
-           kinds[kind].unit, first, body, trouble->of[kind].most, trouble->of[kind].steps);
+  snprintf(text, size, "first at t = %.6g s, %s %d of body '%s'; %d at once at most, in %lld %s", time,
+           kinds[kind].unit, first, body, trouble->of[kind].most, trouble->of[kind].steps,
+           trouble->of[kind].steps > 1 ? "steps" : "step");
 }
 
 void fem_trouble_describe(const FemTrouble *trouble, const FemModel *model, FemTroubleKind kind, char *text,

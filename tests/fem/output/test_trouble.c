@@ -109,6 +109,10 @@ START_TEST(steps_and_events_are_counted_apart) {
   fem_trouble_describe(&trouble, &looked.run.model, FEM_TROUBLE_INVERTED, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "t = 0.1 s"));
   ck_assert_ptr_nonnull(strstr(text, "body 'upper'"));
+  ck_assert_ptr_nonnull(strstr(text, " in 3 steps"));
+  trouble.of[FEM_TROUBLE_INVERTED].steps = 1;
+  fem_trouble_describe(&trouble, &looked.run.model, FEM_TROUBLE_INVERTED, text, sizeof text);
+  ck_assert_ptr_nonnull(strstr(text, " in 1 step "));
   close_two(&looked);
 }
 END_TEST
