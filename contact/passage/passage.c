@@ -50,15 +50,23 @@ static bool is_deep(const ContactMeeting *meeting, bool has_field) {
   return meeting->reach > REACH && meeting->covered > cube(REACH);
 }
 
+// Whether the element may have come from one side of the middle to the other since the last state: it moves
+// by the margin at most.
+static bool may_cross(const ContactPassage *passage, const ContactMeeting *meeting, double margin) {
+  if (!passage->middles || meeting->cell < 0) return true;
+  return passage->middles[meeting->cell] * (1 - meeting->reach) <= margin;
+}
+
 // What the element becomes where it meets the other one like this.
-static void meet(ContactPassageEntry *entry, const ContactMeeting *meeting, bool has_field) {
+static void meet(ContactPassageEntry *entry, const ContactMeeting *meeting, bool has_field,
+                 bool is_crossing) {
   Vec3 kept = vec3_at(entry->direction), h = direction_of(meeting);
   double length = vec3_length(h), along = vec3_dot(h, kept);
   bool is_known = vec3_length(kept) > 0, is_opposed = is_known && along < -TURNED;
   entry->cell = meeting->cell;
   entry->reach = meeting->reach;
   entry->covered = meeting->covered;
-  entry->is_deep = is_deep(meeting, has_field) || (entry->is_deep && is_opposed);
+  entry->is_deep = is_deep(meeting, has_field) || (entry->is_deep && is_opposed && is_crossing);
   if (!(meeting->covered >= rounding())) return;
   if (is_opposed && entry->is_deep) entry->is_turned = true;
   if (is_known && along > TURNED) entry->is_turned = false;
@@ -165,7 +173,8 @@ static void match_element(ContactPassage *passage, const ContactLayout *layout, 
       entries[m - begin] = *entry;
   }
   for (int m = begin; m < end; m++)
-    meet(&entries[m - begin], &meetings->list[m], contact_layout_has_field(layout));
+    meet(&entries[m - begin], &meetings->list[m], contact_layout_has_field(layout),
+         may_cross(passage, &meetings->list[m], layout->margin));
 }
 
 // Both lists are in order.

@@ -18,7 +18,8 @@
 //   been deep inside can come to the other side by passing through.
 //
 // Turned. h is opposed where its component along the kept direction is below −½. An element is turned once h
-// is opposed while the element is deep inside, or has been since h became opposed. It has gone beyond the
+// is opposed while the element is deep inside, or was before h became opposed and the middle of B is no
+// farther than the margin of contact's lists, by which it moves at most in a step. It has gone beyond the
 // middle of B then, and is pushed out on the other side. It is no longer turned once that component is above
 // ½. An element that leaves B while it is turned has passed through.
 //
@@ -57,7 +58,7 @@ typedef struct ContactPassageEntry {
   int interface, tet;
   int cell; // of the part, the one that it meets most of; −1: a shape
   bool is_turned;
-  bool is_deep;          // deep inside, or was, and h has been opposed to the kept direction since
+  bool is_deep; // deep inside, or was, h has been opposed to the kept direction since, and the middle is near
   double direction[3];   // in which it came in; 0: not known yet
   double reach, covered; // scratch: the shares, now
 } ContactPassageEntry;

@@ -146,11 +146,11 @@ END_TEST
 
 // In through the upper side of a plate to the lower one, near which it stays for a while, in steps that leave
 // the middle out.
-static void cross_in_jumps(Scene *scene) {
-  blocks_add(&scene->blocks, &(BlockDef){.cell = {0.25, 0.25, 0.15}, .cells = {8, 8, 2}});
+static void cross_in_jumps(Scene *scene, double margin, int layers) {
+  blocks_add(&scene->blocks, &(BlockDef){.cell = {0.25, 0.25, 0.3 / layers}, .cells = {8, 8, layers}});
   blocks_add(&scene->blocks,
              &(BlockDef){.corner = {0.81, 0.77, 0.31}, .cell = {0.4, 0.4, 0.4}, .cells = {1, 1, 1}});
-  scene->margin = 0.5;
+  scene->margin = margin;
   start(scene);
   move(scene, 2, (const double[]){0, 0, -0.11});
   move(scene, 1, (const double[]){0, 0, -0.59});
@@ -161,13 +161,24 @@ static void cross_in_jumps(Scene *scene) {
 START_TEST(what_has_been_deep_inside_turns_however_long_it_stays_near_the_other_side) {
   for (int k = 0; k < 2; k++) {
     Scene scene = {.shape_count = 0};
-    cross_in_jumps(&scene);
+    cross_in_jumps(&scene, 0.5, 2);
     ck_assert_int_gt(contact_passage_turned(&scene.passage).elements, 0);
     if (k == 1) move(&scene, 1, (const double[]){0, 0, 0.09}); // deep again
     move(&scene, 1, (const double[]){0, 0, -0.2});
     ck_assert_int_gt(scene.passed, 0);
     destroy(&scene);
   }
+}
+END_TEST
+
+// The middle of the plate, .15 away, is out of its reach: the element has come round an edge.
+START_TEST(what_a_step_cannot_carry_to_the_other_side_is_not_turned) {
+  Scene scene = {.shape_count = 0};
+  cross_in_jumps(&scene, 0.06, 1);
+  ck_assert_int_eq(scene.most_turned, 0);
+  move(&scene, 1, (const double[]){0, 0, -0.2});
+  ck_assert_int_eq(scene.passed, 0);
+  destroy(&scene);
 }
 END_TEST
 
@@ -204,7 +215,7 @@ END_TEST
 
 START_TEST(a_second_look_at_a_state_changes_nothing) {
   Scene scene = {.looks_again = true};
-  cross_in_jumps(&scene);
+  cross_in_jumps(&scene, 0.5, 2);
   destroy(&scene);
   start_plate_and_block(&scene, 1);
   scene.looks_again = true;
@@ -421,6 +432,7 @@ int main(void) {
   tcase_add_test(cases, what_enters_by_a_third_and_comes_back_has_not);
   tcase_add_test(cases, what_lies_between_two_layers_has_not_passed_either);
   tcase_add_test(cases, what_has_been_deep_inside_turns_however_long_it_stays_near_the_other_side);
+  tcase_add_test(cases, what_a_step_cannot_carry_to_the_other_side_is_not_turned);
   tcase_add_test(cases, a_second_look_at_a_state_changes_nothing);
   tcase_add_test(cases, where_parts_become_one_what_may_turn_is_not_forgotten);
   tcase_add_test(cases, an_element_counts_once_in_however_many_parts);
