@@ -116,6 +116,18 @@ void fem_model_stress(const FemModel *model, int tet, const double *positions, d
                        stress);
 }
 
+bool fem_model_is_rigid(const FemModel *model, int body) {
+  const int begin = 3 * model->bodies[body].vertex_begin, end = 3 * model->bodies[body].vertex_end;
+  for (int dof = begin; dof < end; dof++)
+    if (!model->is_prescribed[dof]) return false;
+  for (int d = 0; d < model->driver_count; d++) {
+    const FemModelDriver *driver = &model->drivers[d];
+    bool is_theirs = driver->dof_count > 0 && driver->dofs[0] >= begin && driver->dofs[0] < end;
+    if (is_theirs && driver->def->release > 0) return false;
+  }
+  return true;
+}
+
 // The memory of contact is proportional to the surfaces: six faces of a cube of n vertices have 6 n^(2/3).
 // Measured on cubes that touch with one face.
 static double contact_bytes(const FemModel *model) {

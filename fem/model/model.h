@@ -87,6 +87,9 @@ static inline bool fem_model_is_released(const FemModelDriver *driver, double ti
   return driver->def->release > 0 && driver->def->release <= time;
 }
 
+// Whether contact cannot deform the body: every coordinate of it is prescribed and never released.
+bool fem_model_is_rigid(const FemModel *model, int body);
+
 // Whether the driver moves anything, where those up to that time have been released.
 static inline bool fem_model_is_moved(const FemModelDriver *driver, double released) {
   return !driver->is_fixed && !fem_model_is_released(driver, released);

@@ -44,9 +44,11 @@ static bool is_at_rest(const FemSceneDef *scene) {
 
 static bool is_locking(const FemModel *model) {
   bool locks = false;
-  for (int p = 0; p < model->part_count; p++)
+  for (int p = 0; p < model->part_count; p++) {
+    int body = model->parts[p].body;
     locks = locks || (model->parts[p].material.poisson >= 0.45 &&
-                      model->bodies[model->parts[p].body].element == FEM_ELEMENT_LINEAR);
+                      model->bodies[body].element == FEM_ELEMENT_LINEAR && !fem_model_is_rigid(model, body));
+  }
   return locks;
 }
 
@@ -79,7 +81,7 @@ static Status note_thin(const AppJob *job, AppCheckNotes *notes) {
   const FemSceneDef *scene = &job->scene;
   for (int b = 0, k = 0; b < scene->body_count && k < APP_CHECK_THIN; b++) {
     FemThickness found;
-    if (scene->bodies[b].element == FEM_ELEMENT_QUADRATIC) continue;
+    if (scene->bodies[b].element == FEM_ELEMENT_QUADRATIC || fem_model_is_rigid(&job->model, b)) continue;
     TRY(fem_thickness_find(&job->model, b, &found));
     if (!found.is_slender || !(found.layers < ENOUGH_LAYERS)) continue;
     snprintf(notes->thin[k], sizeof notes->thin[k],

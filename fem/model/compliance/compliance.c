@@ -33,7 +33,7 @@ static const double RESOLVED = 2.2, WIDE = 0.6;
 // The depth at which a tip gives way over the reach of its elements, at most.
 static const double TIP_DEPTH = 0.2;
 
-// Of every body; an obstacle is rigid and has none.
+// Of every body; an obstacle is rigid and has none, nor has a body that is held as a whole.
 typedef struct Give {
   FemExtent extent; // its height is L
   double wall;      // L of an impact (thickness.h) [m]
@@ -132,6 +132,7 @@ static Status measure_bodies(const FemModel *model, double blow, Give *gives) {
   for (int b = 0; b < model->body_count; b++) TRY(fem_tip_find(model, b, &gives[b].tip));
   measure_shapes(model, gives);
   for (int b = 0; b < model->scene->body_count; b++) {
+    if (fem_model_is_rigid(model, b)) continue;
     TRY(fem_extent_measure(model, b, &gives[b].extent));
     TRY(measure_wall(model, b, blow, &gives[b]));
     gives[b].inverse = fem_model_parts_mean(model, b, inverse_of);
@@ -188,7 +189,7 @@ static double stiffness_between(const Give *a, const Give *b, double blow, int t
                                 FemComplianceBound *bound) {
   double sum = give_at(a, b, meeting), wall = a->wall, sharp = fmax(sharp_of(a, b), sharp_of(b, a));
   *bound = FEM_COMPLIANCE_BODIES;
-  if (!(sum > 0)) return 1;
+  if (!(sum > 0)) return 0;
   if (b->wall > 0) wall = wall > 0 ? fmin(wall, b->wall) : b->wall;
   double stiffness = 1 / (terms * GIVE * sum), struck = pressure_of(a, b, blow) / (terms * BLOW_DEPTH * wall);
   if (meeting->layer > GIVE * sum) stiffness = 1 / (terms * meeting->layer), *bound = FEM_COMPLIANCE_ELEMENTS;
@@ -273,6 +274,15 @@ static int terms_of(const FemModel *model, int b) {
   return b < model->body_count ? 2 : 1;
 }
 
+// Two that do not yield are as stiff as the least of the others.
+static void replace_zeros(double *stiffness, size_t count) {
+  double least = INFINITY;
+  for (size_t k = 0; k < count; k++)
+    if (stiffness[k] > 0) least = fmin(least, stiffness[k]);
+  for (size_t k = 0; k < count; k++)
+    if (!(stiffness[k] > 0)) stiffness[k] = isfinite(least) ? least : 1;
+}
+
 static void choose_for_field(const FemModel *model, const Give *gives, const Course *course,
                              FemCompliance *choice) {
   int parties = choice->party_count;
@@ -283,6 +293,7 @@ static void choose_for_field(const FemModel *model, const Give *gives, const Cou
           stiffness_between(&gives[a], &gives[b], a == b ? 0 : course->blow, terms_of(model, b), &meeting,
                             &choice->bounds[a * parties + b]);
     }
+  replace_zeros(choice->stiffness, (size_t)model->body_count * (size_t)parties);
 }
 
 // ---- What they may be pressed by.

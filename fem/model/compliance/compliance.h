@@ -9,7 +9,8 @@
 //   c = 25 / (L (1/E_A' + 1/E_B')),     E' = E/(1 − 3.5 ν⁴)
 //
 // keeps the first at 2 % of the second. For two equal bodies it is 12.5 E'/L. E' is a fit to the stiffness of
-// cubes that are held on the pressed face. Obstacles do not yield. A shape without elements presses with c d
+// cubes that are held on the pressed face. Obstacles do not yield, nor does a body whose every
+// vertex is held or driven. A shape without elements presses with c d
 // in place of 2 c d: against one, c = 50 E'/L. Where two curve, a patch of the radius a (patch.h) yields by
 // π/2 a (1/E_A' + 1/E_B') for each Pa in its middle. Where that is less than what whole bodies yield, and
 // neither lies in a hollow of the other, c keeps 2 % of that.

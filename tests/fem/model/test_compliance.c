@@ -234,6 +234,24 @@ START_TEST(quadratic_elements_with_straight_edges_are_named) {
 }
 END_TEST
 
+// One of two equal cubes is driven as a whole; where it is released later, it yields as much as the other.
+START_TEST(a_body_that_is_driven_as_a_whole_does_not_yield) {
+  SceneRun run;
+  FemCompliance choice;
+  double stiffness[2];
+  for (int k = 0; k < 2; k++) {
+    choose(&run, "status",
+           k ? (const char *const[]){"time.static=false", "bodies.right.driven[0].release=0.5", NULL}
+             : (const char *const[]){"time.static=false", NULL},
+           &choice);
+    ck_assert(fem_model_is_rigid(&run.model, 1) == (k == 0));
+    stiffness[k] = choice.stiffness[1];
+    forget(&run, &choice);
+  }
+  ck_assert_near(stiffness[0], 2 * stiffness[1], 0.02 * stiffness[0]);
+}
+END_TEST
+
 START_TEST(the_scene_has_the_last_word) {
   SceneRun run;
   FemCompliance choice;
@@ -258,6 +276,7 @@ int main(void) {
   tcase_add_test(tests, a_short_peak_of_a_table_is_seen);
   tcase_add_test(tests, a_turn_about_an_axis_amid_what_is_driven_is_no_approach);
   tcase_add_test(tests, a_shaft_beside_a_hole_of_its_radius_lies_in_no_hollow);
+  tcase_add_test(tests, a_body_that_is_driven_as_a_whole_does_not_yield);
   tcase_add_test(tests, the_choice_knows_no_lengths_and_no_directions);
   tcase_add_test(tests, leaves_that_bend_together_are_no_stiffer_than_their_elements);
   tcase_add_test(tests, leaves_that_are_squeezed_are_pressed_by_their_heights);
