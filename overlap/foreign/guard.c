@@ -12,16 +12,20 @@
 static _Thread_local pid_t caller; // 0: none
 static _Thread_local const char *called;
 
-// Runs in exit(), in the thread that called it. A process that the library forked ends as it likes.
-static void end_with_failure(void) {
-  if (getpid() != caller) return;
+int overlap_foreign_guard_leave(const char *function, int code) {
+  if (getpid() != caller) return code;
+  caller = 0;
   fflush(NULL);
-  fprintf(
-      stderr,
-      "error: %s: called exit() where the program waits for an answer: a model that fails returns a number "
-      "other than 0 and a message (tetlap/model.h)\n",
-      called);
-  _exit(status_exit_code(STATUS_SOLVER));
+  fprintf(stderr,
+          "error: %s: called %s where the program waits for an answer: a model that fails returns a number "
+          "other than 0 and a message (tetlap/model.h)\n",
+          called, function);
+  return status_exit_code(STATUS_SOLVER);
+}
+
+// Runs in exit(), in the thread that called it.
+static void end_with_failure(void) {
+  if (getpid() == caller) _exit(overlap_foreign_guard_leave("exit()", 0));
 }
 
 static void register_end(void) {

@@ -93,10 +93,25 @@ static Status choose_form(const Options *options, AppPairsForm *form) {
   return STATUS_OK;
 }
 
+// What will be asked of the model.
+static Status check_gifts(const Options *options, const OverlapModel *model) {
+  const char *name = options->model;
+  if (overlap_model_has_gradient(model)) return STATUS_OK;
+  if (!overlap_model_has_own_centroid(model))
+    return status_fail(
+        STATUS_USAGE,
+        "--model: '%s' gives V alone, and a centroid is written, too; `tetlap eval` grades it on pairs",
+        name);
+  if (options->order > 0)
+    return status_fail(STATUS_USAGE, "--model: '%s' gives no gradient; take --order 0", name);
+  return STATUS_OK;
+}
+
 static Status run_opened(const Options *options, AppPairsReader *reader, const OverlapModel *model) {
   AppPairsForm form;
   AppPairsWriter writer;
   long long overlapping = 0;
+  TRY(check_gifts(options, model));
   TRY(choose_form(options, &form));
   TRY(app_pairs_writer_open(&writer, options->output, form, options->order > 0));
   Status status = answer_all(reader, model, &writer, &overlapping);

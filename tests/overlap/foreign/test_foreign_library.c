@@ -93,15 +93,21 @@ START_TEST(a_library_that_is_cut_off_is_refused) {
 END_TEST
 
 START_TEST(a_library_that_ends_the_program_does_not_end_it_well) {
-  char text[20000], folder[] = "/tmp/tetlap-foreign-XXXXXX", words[1000];
-  ck_assert_ptr_nonnull(mkdtemp(folder));
-  snprintf(words, sizeof words,
-           "run %s/examples/02_two_blocks.yaml --set time.end=0.1 --set output.vtu=false --overlap %s -o %s",
-           TETLAP_SOURCE_DIR, TETLAP_MODEL_21, folder);
-  ck_assert_int_eq(run_program(words, text), 70);
-  ck_assert_msg(strstr(text, TETLAP_MODEL_21 ": called exit()"), "%s", text);
-  snprintf(words, sizeof words, "--version; rm -r %s", folder);
-  run_program(words, text);
+  static const char *const libraries[] = {TETLAP_MODEL_21, TETLAP_MODEL_23};
+  static const char *const told[] = {TETLAP_MODEL_21 ": called exit()", TETLAP_MODEL_23 ": called _exit()"};
+  for (int k = 0; k < 2; k++) {
+    char text[20000], folder[] = "/tmp/tetlap-foreign-XXXXXX", words[1000];
+    ck_assert_ptr_nonnull(mkdtemp(folder));
+    snprintf(
+        words, sizeof words,
+        "run %s/examples/02_two_blocks.yaml --set time.end=0.1 --set output.vtu=false --overlap %s -o %s",
+        TETLAP_SOURCE_DIR, libraries[k], folder);
+    ck_assert_int_eq(run_program(words, text), 70);
+    char *first = strstr(text, told[k]);
+    ck_assert_msg(first && !strstr(first + 1, told[k]), "%s", text);
+    snprintf(words, sizeof words, "--version; rm -r %s", folder);
+    run_program(words, text);
+  }
 }
 END_TEST
 

@@ -177,6 +177,30 @@ START_TEST(python_that_is_wrong) {
 }
 END_TEST
 
+START_TEST(what_a_model_cannot_give_is_said_before_anything_is_written) {
+  static const struct {
+    const char *model, *order, *told;
+    int code;
+  } cases[] = {{PYTHON("whole_numbers"), "1", "gives no gradient; take --order 0", 64},
+               {PYTHON("whole_numbers"), "0", "volume,centroid_x", 0},
+               {PYTHON("alone"), "0", "gives V alone", 64}};
+  if (!has_numpy()) return;
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    char text[20000], file[] = "/tmp/tetlap-foreign-XXXXXX", command[1500];
+    static const char pair[] = "0,0,0,1,0,0,0,1,0,0,0,1,.1,.1,.1,1,0,0,0,1,0,0,0,1\n";
+    const int descriptor = mkstemp(file);
+    ck_assert(descriptor >= 0 && write(descriptor, pair, strlen(pair)) == (ssize_t)strlen(pair));
+    ck_assert_int_eq(close(descriptor), 0);
+    snprintf(command, sizeof command, "overlap %s --model %s --order %s", file, cases[k].model,
+             cases[k].order);
+    ck_assert_int_eq(run_program(command, text), cases[k].code);
+    ck_assert_msg(strstr(text, cases[k].told), "%s", text);
+    ck_assert(cases[k].code == 0 || !strstr(text, "centroid_x"));
+    ck_assert_int_eq(remove(file), 0);
+  }
+}
+END_TEST
+
 // The model of this is the test: it answers before it is asked.
 START_TEST(a_reply_that_comes_too_late_answers_no_other_request) {
   static const uint64_t done[4] = {0};
@@ -389,6 +413,7 @@ int main(void) {
   tcase_add_test(cases, the_shared_memory_grows);
   tcase_add_test(cases, python_that_is_wrong);
   tcase_add_test(cases, a_reply_that_comes_too_late_answers_no_other_request);
+  tcase_add_test(cases, what_a_model_cannot_give_is_said_before_anything_is_written);
   tcase_add_test(cases, a_model_that_writes_nothing_has_not_answered);
   tcase_add_test(cases, a_model_gets_no_file_of_the_program);
   tcase_add_test(cases, commands_that_are_wrong_leave_no_process);
