@@ -86,16 +86,21 @@ size_t contact_stiffness_bytes(const ContactStiffness *stiffness) {
 
 // ---- Which pairs are of the same two elements.
 
-static int compare(const void *left, const void *right) {
-  const ContactStiffnessKey *a = left, *b = right;
+static int compare_elements(const ContactStiffnessKey *a, const ContactStiffnessKey *b) {
   if (a->interface != b->interface) return a->interface < b->interface ? -1 : 1;
   for (int side = 0; side < 2; side++)
     if (a->elements[side] != b->elements[side]) return a->elements[side] < b->elements[side] ? -1 : 1;
-  return (a->pair > b->pair) - (a->pair < b->pair);
+  return 0;
+}
+
+static int compare(const void *left, const void *right) {
+  const ContactStiffnessKey *a = left, *b = right;
+  int order = compare_elements(a, b);
+  return order ? order : (a->pair > b->pair) - (a->pair < b->pair);
 }
 
 static bool are_alike(const ContactStiffnessKey *a, const ContactStiffnessKey *b) {
-  return a->interface == b->interface && a->elements[0] == b->elements[0] && a->elements[1] == b->elements[1];
+  return compare_elements(a, b) == 0;
 }
 
 // Those of the interface; `*ordered`: how many they are.
@@ -211,22 +216,45 @@ Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *l
 
 // ---- What may couple.
 
-// Visits the vertices that any two elements with a pair among these couple.
+void contact_coupled_destroy(ContactCoupled *coupled) {
+  memory_free(coupled->keys);
+  *coupled = (ContactCoupled){0};
+}
+
+// Takes the first `count` of the order, ascending and new, from the back so that nothing is moved twice.
+static Status merge(const ContactStiffness *stiffness, int count, ContactCoupled *coupled) {
+  int kept = coupled->count, whole = kept + count;
+  if (!memory_reserve((void **)&coupled->keys, &coupled->capacity, (size_t)whole, sizeof *coupled->keys))
+    return status_no_memory("contact couplings");
+  for (int to = whole - 1; count > 0; to--) {
+    bool is_new = kept == 0 || compare_elements(&stiffness->order[count - 1], &coupled->keys[kept - 1]) > 0;
+    coupled->keys[to] = is_new ? stiffness->order[--count] : coupled->keys[--kept];
+  }
+  coupled->count = whole;
+  return STATUS_OK;
+}
+
+// Visits the vertices that any two elements with a pair among these couple, but for those that are coupled.
 static Status visit_elements(ContactStiffness *stiffness, const ContactLayout *layout, int count,
-                             const ContactPair *pairs, void *visitor,
+                             const ContactPair *pairs, ContactCoupled *coupled, void *visitor,
                              Status (*visit)(void *visitor, int count, const int *vertices)) {
-  Status status = STATUS_OK;
+  int new_count = 0, place = 0;
   TRY(order_pairs(stiffness, layout, CONTACT_ALL_INTERFACES, count, pairs, &count));
-  for (int k = 0; k < count && !status; k++) {
-    if (k > 0 && are_alike(&stiffness->order[k], &stiffness->order[k - 1])) continue;
-    const ContactPair *pair = &pairs[stiffness->order[k].pair];
+  for (int k = 0; k < count; k++) {
+    const ContactStiffnessKey key = stiffness->order[k];
+    if (k > 0 && are_alike(&key, &stiffness->order[k - 1])) continue;
+    while (place < coupled->count && compare_elements(&coupled->keys[place], &key) < 0) place++;
+    if (place < coupled->count && are_alike(&coupled->keys[place], &key)) continue;
+    const ContactPair *pair = &pairs[key.pair];
     for (int side = 0; side < 2; side++)
       if (layout->interfaces[pair->interface].weight[side] > 0)
         list_element(stiffness, layout, contact_mesh_tet(&layout->mesh, pair->cells[side]));
-    status = visit(visitor, stiffness->count, stiffness->vertices);
+    Status status = visit(visitor, stiffness->count, stiffness->vertices);
     forget_vertices(stiffness);
+    TRY(status);
+    stiffness->order[new_count++] = key;
   }
-  return status;
+  return merge(stiffness, new_count, coupled);
 }
 
 static bool is_within(const ContactLayout *layout, const ContactPair *pair, double time,
@@ -245,7 +273,7 @@ static bool is_within(const ContactLayout *layout, const ContactPair *pair, doub
 
 Status contact_stiffness_couple(ContactStiffness *stiffness, const ContactLayout *layout,
                                 const ContactCandidateList *candidates, double time, const double *positions,
-                                double reach, void *visitor,
+                                double reach, ContactCoupled *coupled, void *visitor,
                                 Status (*visit)(void *visitor, int count, const int *vertices)) {
   int count = 0;
   for (int k = 0; k < candidates->count; k++) {
@@ -255,5 +283,5 @@ Status contact_stiffness_couple(ContactStiffness *stiffness, const ContactLayout
       return status_no_memory("contact couplings");
     stiffness->near_pairs[count++] = candidates->pairs[k];
   }
-  return visit_elements(stiffness, layout, count, stiffness->near_pairs, visitor, visit);
+  return visit_elements(stiffness, layout, count, stiffness->near_pairs, coupled, visitor, visit);
 }

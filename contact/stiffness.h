@@ -24,6 +24,13 @@ typedef struct ContactStiffnessKey {
   int pair;
 } ContactStiffnessKey;
 
+// Which elements have been coupled with which: their cliques need not be visited again.
+typedef struct ContactCoupled {
+  ContactStiffnessKey *keys; // one of each two, ascending by their elements          (count)
+  int count;
+  size_t capacity;
+} ContactCoupled;
+
 // Scratch memory.
 typedef struct ContactStiffness {
   ContactPair *near_pairs; // that may couple
@@ -59,10 +66,13 @@ Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *l
                              const ContactStiffnessWay *way, const ContactStiffnessSink *sink);
 
 // Visits cliques that contain every list the sink would be given if all candidates whose boxes are within
-// `reach` of each other (of a shape: that are within `reach` of it) overlapped.
+// `reach` of each other (of a shape: that are within `reach` of it) overlapped, but for those of elements
+// that are `coupled`, which takes the new ones. Begin with a zeroed one.
 Status contact_stiffness_couple(ContactStiffness *stiffness, const ContactLayout *layout,
                                 const ContactCandidateList *candidates, double time, const double *positions,
-                                double reach, void *visitor,
+                                double reach, ContactCoupled *coupled, void *visitor,
                                 Status (*visit)(void *visitor, int count, const int *vertices));
+
+void contact_coupled_destroy(ContactCoupled *coupled); // it can be used again
 
 #endif

@@ -489,10 +489,12 @@ static Status visit_given(void *visitor, int count, const int *vertices) {
 }
 
 Status contact_system_couple(ContactSystem *system, const ContactEvaluation *evaluation, double reach,
-                             void *visitor, Status (*visit)(void *visitor, int count, const int *vertices)) {
+                             ContactCoupled *coupled, void *visitor,
+                             Status (*visit)(void *visitor, int count, const int *vertices)) {
   Visit given = {system, visitor, visit};
   return contact_stiffness_couple(&system->stiffness, &system->layout, &system->candidates.list,
-                                  evaluation->time, evaluation->positions, reach, &given, visit_given);
+                                  evaluation->time, evaluation->positions, reach, coupled, &given,
+                                  visit_given);
 }
 
 Status contact_system_active_pairs(const ContactSystem *system, const ContactEvaluation *evaluation,

@@ -130,9 +130,11 @@ void contact_system_add_force_of(const ContactSystem *system, const ContactEvalu
 double contact_system_energy_of(const ContactEvaluation *evaluation, int interface);
 
 // Calls `visit` for every clique of vertices that the stiffness may couple. Pairs that are apart by less than
-// `reach` [m] are included, so that a matrix pattern can be laid out ahead.
+// `reach` [m] are included, so that a matrix pattern can be laid out ahead; elements that are `coupled` are
+// left out (contact/stiffness.h).
 Status contact_system_couple(ContactSystem *system, const ContactEvaluation *evaluation, double reach,
-                             void *visitor, Status (*visit)(void *visitor, int count, const int *vertices));
+                             ContactCoupled *coupled, void *visitor,
+                             Status (*visit)(void *visitor, int count, const int *vertices));
 
 // Pressure, depth and traction at the surface (contact/pressure/trace.h). Interfaces at rest are included,
 // without their friction. `pulls`: friction on side 0 of each pair of the evaluation [N] (pair_count); NULL:

@@ -471,13 +471,15 @@ static Status whole_life(const Fixture *f) {
   ContactStiffnessSink sink = {NULL, ignore_outer, ignore_dense};
   ContactSystem *system = NULL;
   ContactAudit audit;
+  ContactCoupled coupled = {0};
   const ContactEvaluation *evaluation;
   Status status = contact_system_create(&system, &def);
   if (!status) status = contact_system_update(system, 0, f->blocks.x, f->still, 0.01);
   if (!status) status = contact_evaluate(system, 0, 0, f->blocks.x, &evaluation);
   if (!status) status = contact_system_stiffness(system, evaluation, &sink);
-  if (!status) status = contact_system_couple(system, evaluation, 0.1, NULL, ignore_clique);
+  if (!status) status = contact_system_couple(system, evaluation, 0.1, &coupled, NULL, ignore_clique);
   if (!status) status = contact_system_audit(system, 0, f->blocks.x, &f->model, &f->model, &audit);
+  contact_coupled_destroy(&coupled);
   contact_system_destroy(system);
   return status;
 }

@@ -347,15 +347,42 @@ START_TEST(couplings_hold_the_stiffness_here_and_within_reach) {
   Couplings here = {.vertex_count = (int)n, .may = calloc(n * n, 1)};
   Couplings near = {.vertex_count = (int)n, .may = calloc(n * n, 1)};
   const ContactEvaluation *evaluation = evaluated_at(f->system, 0, f->blocks.x);
-  ck_assert_ok(contact_system_couple(f->system, evaluation, 0, &here, allow_clique));
-  ck_assert_ok(contact_system_couple(f->system, evaluation, 0.3, &near, allow_clique));
+  ContactCoupled coupled[2] = {{0}};
+  ck_assert_ok(contact_system_couple(f->system, evaluation, 0, &coupled[0], &here, allow_clique));
+  ck_assert_ok(contact_system_couple(f->system, evaluation, 0.3, &coupled[1], &near, allow_clique));
   ck_assert_int_gt(here.clique_count, 0);
   ck_assert_int_eq(missing_at(&here, f->system, f->blocks.x), 0);
   ck_assert_int_eq(missing_at(&near, f->system, f->blocks.x), 0);
   double *x = moved(f, 0.05, 0, -0.28);
   ck_assert_int_eq(missing_at(&near, f->system, x), 0);
   ck_assert_int_gt(missing_at(&here, f->system, x), 0);
+  for (int k = 0; k < 2; k++) contact_coupled_destroy(&coupled[k]);
   free(x), free(here.may), free(near.may), destroy(f);
+}
+END_TEST
+
+// In steps of the reach each two elements are visited once, and couple what all at once do.
+START_TEST(what_is_coupled_is_not_visited_again) {
+  Fixture *f = two_blocks(0.1, 0.1);
+  size_t n = (size_t)f->blocks.vertex_count;
+  const ContactEvaluation *evaluation = evaluated_at(f->system, 0, f->blocks.x);
+  Couplings steps = {.vertex_count = (int)n, .may = calloc(n * n, 1)};
+  Couplings once = {.vertex_count = (int)n, .may = calloc(n * n, 1)};
+  ContactCoupled coupled[2] = {{0}};
+  const double reaches[] = {0, 0.15, 0.3, 0.3, 0};
+  int counts[5];
+  for (int k = 0; k < 5; k++) {
+    ck_assert_ok(contact_system_couple(f->system, evaluation, reaches[k], &coupled[0], &steps, allow_clique));
+    counts[k] = steps.clique_count;
+  }
+  ck_assert_ok(contact_system_couple(f->system, evaluation, 0.3, &coupled[1], &once, allow_clique));
+  ck_assert_int_gt(counts[0], 0);
+  ck_assert_int_gt(counts[2], counts[0]);
+  ck_assert_int_eq(counts[4], counts[2]);
+  ck_assert_int_eq(steps.clique_count, once.clique_count);
+  ck_assert_mem_eq(steps.may, once.may, n * n);
+  for (int k = 0; k < 2; k++) contact_coupled_destroy(&coupled[k]);
+  free(steps.may), free(once.may), destroy(f);
 }
 END_TEST
 
@@ -367,12 +394,15 @@ static Status refuse_clique(void *visitor, int count, const int *vertices) {
 START_TEST(a_visitor_that_fails_ends_the_visit) {
   Fixture *f = two_blocks(-0.2, 0.1);
   const ContactEvaluation *evaluation = evaluated_at(f->system, 0, f->blocks.x);
-  ck_assert_int_eq(contact_system_couple(f->system, evaluation, 0, NULL, refuse_clique), STATUS_MEMORY);
+  ContactCoupled coupled = {0};
+  ck_assert_int_eq(contact_system_couple(f->system, evaluation, 0, &coupled, NULL, refuse_clique),
+                   STATUS_MEMORY);
   Couplings all = {.vertex_count = f->blocks.vertex_count};
   all.may = calloc((size_t)all.vertex_count * (size_t)all.vertex_count, 1);
   ck_assert_ok(
-      contact_system_couple(f->system, evaluation, 0, &all, allow_clique)); // and leaves nothing behind
+      contact_system_couple(f->system, evaluation, 0, &coupled, &all, allow_clique)); // and leaves nothing
   ck_assert_int_eq(missing_at(&all, f->system, f->blocks.x), 0);
+  contact_coupled_destroy(&coupled);
   free(all.may), destroy(f);
 }
 END_TEST
@@ -418,6 +448,7 @@ int main(void) {
   tcase_add_test(cases, a_halfspace_that_rises_beyond_the_margin_is_refused);
   tcase_add_test(cases, a_list_that_is_kept_is_copied_where_a_search_would_find_the_same);
   tcase_add_loop_test(cases, couplings_hold_the_stiffness_here_and_within_reach, 0, CONTACT_POTENTIAL_COUNT);
+  tcase_add_test(cases, what_is_coupled_is_not_visited_again);
   tcase_add_test(cases, a_visitor_that_fails_ends_the_visit);
   tcase_add_test(cases, a_list_lasts_for_the_steps_that_it_is_made_for);
   return suite_run("contact_lists", cases, 60);

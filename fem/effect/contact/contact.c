@@ -30,7 +30,8 @@ typedef struct Contact {
   int shape_count;
   bool has_self; // a body meets itself
   ContactSystem *system;
-  double reach; // pairs closer than this are laid out in the matrix ahead [m]
+  double reach;           // pairs closer than this are laid out in the matrix ahead [m]
+  ContactCoupled coupled; // what the matrix pattern has
 } Contact;
 
 // A pair this close, as a share of the mean edge, is expected to touch soon.
@@ -44,6 +45,7 @@ static bool is_wanted(const FemSceneDef *scene) {
 static void destroy(void *self) {
   Contact *contact = self;
   contact_system_destroy(contact->system);
+  contact_coupled_destroy(&contact->coupled);
   overlap_model_destroy(&contact->overlap);
   memory_free(contact->bodies);
   memory_free(contact->shapes);
@@ -198,8 +200,11 @@ static Status renew(void *self, const FemState *state, double step) {
   return contact_system_update(contact->system, state->time, state->positions, state->velocities, step);
 }
 
+// The pattern is taken back then, too.
 static void forget(void *self) {
-  contact_system_forget(((Contact *)self)->system);
+  Contact *contact = self;
+  contact_system_forget(contact->system);
+  contact_coupled_destroy(&contact->coupled);
 }
 
 typedef struct Coupling {
@@ -221,7 +226,8 @@ static Status couple(void *self, const FemState *state, FemPattern *pattern, int
   const ContactEvaluation *evaluation;
   TRY(evaluate(contact, state, &evaluation));
   Coupling coupling = {.pattern = pattern, .has_grown = has_grown};
-  return contact_system_couple(contact->system, evaluation, contact->reach, &coupling, add_clique);
+  return contact_system_couple(contact->system, evaluation, contact->reach, &contact->coupled, &coupling,
+                               add_clique);
 }
 
 static Status add_force(void *self, const FemState *state, double *force) {
@@ -280,7 +286,8 @@ static void report(void *self, const FemState *state, Record *counters) {
 static size_t bytes(const void *self) {
   const Contact *contact = self;
   return memory_held(self) + memory_held(contact->bodies) + memory_held(contact->shapes) +
-         memory_held(contact->solids) + contact_system_bytes(contact->system);
+         memory_held(contact->solids) + memory_held(contact->coupled.keys) +
+         contact_system_bytes(contact->system);
 }
 
 const FemEffectOps fem_effect_contact = {
