@@ -34,9 +34,9 @@ START_TEST(a_block_that_is_rubbed_by_learned_overlaps_agrees_with_differences_of
 END_TEST
 
 // By weights, through all steps.
-static void check_weights(const char *scene, const char *setting, const char *of) {
+static void check_weights(const char *model, const char *scene, const char *setting, const char *of) {
   char overlap[400];
-  Weights weights = weights_open("geo-small");
+  Weights weights = weights_open(model);
   Asked asked = {.scene = scene, .setting = setting, .overlap = overlap, .of = {of}, .by_weights = true};
   FemReplaySteps steps;
   Answer answer, moved;
@@ -59,11 +59,14 @@ static void check_weights(const char *scene, const char *setting, const char *of
   weights_close(&weights);
 }
 
+static const char *const by_weights[] = {"geo-small", "hybrid"};
+
 START_TEST(slopes_by_weights_agree_with_differences_of_replays) {
-  check_weights("gradient_rub", "time.end=1", "force:upper:lower:x");
-  check_weights("gradient_rub", "time.end=1", "peak:top");
-  check_weights("gradient_motion", "time.end=0.06", "displacement:upper:z");
-  check_weights("gradient_slide", "time.end=0.02", "displacement:upper:x");
+  const char *model = by_weights[_i];
+  check_weights(model, "gradient_rub", "time.end=1", "force:upper:lower:x");
+  check_weights(model, "gradient_rub", "time.end=1", "peak:top");
+  check_weights(model, "gradient_motion", "time.end=0.06", "displacement:upper:z");
+  check_weights(model, "gradient_slide", "time.end=0.02", "displacement:upper:x");
 }
 END_TEST
 
@@ -163,7 +166,7 @@ int main(void) {
   tcase_add_loop_test(test_case,
                       a_block_that_is_rubbed_by_learned_overlaps_agrees_with_differences_of_replays, 0, 2);
   tcase_add_checked_fixture(test_case, folder_make, folder_remove);
-  tcase_add_test(test_case, slopes_by_weights_agree_with_differences_of_replays);
+  tcase_add_loop_test(test_case, slopes_by_weights_agree_with_differences_of_replays, 0, 2);
   tcase_add_test(test_case, a_slab_between_obstacles_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_slab_under_a_rolling_cylinder_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_slab_on_a_plate_of_tetrahedra_agrees_with_differences_of_replays);
