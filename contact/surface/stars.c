@@ -365,18 +365,39 @@ static Status add_cut(Work *work, int tet, const ContactSmoothCut *cut, int firs
   return STATUS_OK;
 }
 
-static Status add_linear(Work *work, int b) {
+// Of a linear tetrahedron, or of an eighth; the points begin at `first`.
+static Status add_smooth(Work *work, const ContactSmooth *smooth, int tet, int first) {
+  ContactSmoothCut cut;
+  if (smooth->curved_count > 0 && contact_smooth_cut(smooth, tet, &cut))
+    return add_cut(work, tet, &cut, first);
+  return keep_tet(work, tet);
+}
+
+static bool has_cut(const ContactSmooth *smooth, int tet_begin, int tet_end) {
+  ContactSmoothCut cut;
+  for (int i = tet_begin; i < tet_end && smooth->curved_count > 0; i++)
+    if (contact_smooth_cut(smooth, i, &cut)) return true;
+  return false;
+}
+
+// An element of which an eighth is cut: eighths, so that neighbours fit.
+static Status add_quadratic(Work *work, const ContactBody *body, const ContactSmooth *smooth, int element,
+                            int first) {
+  int begin = body->tet_begin + EIGHTH_COUNT * (element - body->quadratic_begin), end = begin + EIGHTH_COUNT;
+  if (!has_cut(smooth, begin, end)) return add_element(work, body, element);
+  for (int i = begin; i < end; i++) TRY(add_smooth(work, smooth, i, first));
+  return STATUS_OK;
+}
+
+static Status add_tets(Work *work, int b) {
   const ContactBody *body = &work->given->bodies[b];
   const ContactSmooth *smooth = &work->smooths[b];
-  ContactSmoothCut cut;
+  bool is_linear = body->quadratic_begin == body->quadratic_end;
   int first = 0;
   if (smooth->curved_count > 0) TRY(add_points(work, smooth, &first));
-  for (int i = body->tet_begin; i < body->tet_end; i++) {
-    if (smooth->curved_count > 0 && contact_smooth_cut(smooth, i, &cut))
-      TRY(add_cut(work, i, &cut, first));
-    else
-      TRY(keep_tet(work, i));
-  }
+  for (int i = body->tet_begin; is_linear && i < body->tet_end; i++) TRY(add_smooth(work, smooth, i, first));
+  for (int e = body->quadratic_begin; e < body->quadratic_end; e++)
+    TRY(add_quadratic(work, body, smooth, e, first));
   return STATUS_OK;
 }
 
@@ -391,8 +412,7 @@ static Status add_body(Work *work, int b) {
     else
       TRY(add_vertex(work, 1, &v, &(double){1}, 1, &work->stars->place[v]));
   }
-  if (given->quadratic_begin == given->quadratic_end) TRY(add_linear(work, b));
-  for (int e = given->quadratic_begin; e < given->quadratic_end; e++) TRY(add_element(work, given, e));
+  TRY(add_tets(work, b));
   body->vertex_end = work->vertex_count, body->tet_end = work->tet_count;
   body->quadratic_begin = body->quadratic_end = 0;
   return STATUS_OK;
@@ -431,12 +451,12 @@ static Status build(Work *work, int quadratic_count, int (*corners)[4]) {
   return finish(work);
 }
 
-// The surfaces of linear bodies that are wanted smooth; whether one is curved.
+// The surfaces that are wanted smooth; whether one is curved.
 static Status find_smooth(Work *work, bool *has_curved) {
   const ContactSystemDef *given = work->given;
   for (int b = 0; b < given->body_count; b++) {
     const ContactBody *body = &given->bodies[b];
-    if (body->smooth == 0 || body->quadratic_end > body->quadratic_begin) continue;
+    if (body->smooth == 0) continue;
     TRY(contact_smooth_create(&work->smooths[b], given, body, body->smooth, given->crease));
     if (work->smooths[b].curved_count > 0) *has_curved = true;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The mesh that the potential `field` works on where a body is curved: of a body of linear tetrahedra the
-// cells of contact/surface/smooth/smooth.h, of quadratic ones stars.
+// cells of contact/surface/smooth/smooth.h, of quadratic ones stars, or where their surface is wanted smooth
+// the cells of their eighths.
 //
 // If contact worked on the eighths of a quadratic tetrahedron, an even pressure p would act with p area/12 on
 // each corner of a face and with p area/4 on each middle of an edge. The element's own nodal forces are p ∫

@@ -373,10 +373,9 @@ static void choose_levels(const FemModel *model, const Give *gives, const Course
   }
   for (int a = 0; a < model->body_count; a++) {
     bool is_quadratic = model->bodies[a].quadratic_end > model->bodies[a].quadratic_begin;
-    bool is_curved = curvature_of(&gives[a]) > 0;
-    choice->is_faceted[a] =
-        is_quadratic && is_curved && choice->levels[a] > 0 && has_straight_edges(model, a);
-    if (!is_curved || is_quadratic) choice->levels[a] = 0;
+    if (!(curvature_of(&gives[a]) > 0)) choice->levels[a] = 0;
+    choice->is_faceted[a] = is_quadratic && choice->levels[a] > 0 && has_straight_edges(model, a);
+    if (choice->is_faceted[a]) choice->levels[a] = 0;
   }
 }
 

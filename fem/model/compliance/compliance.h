@@ -57,7 +57,8 @@
 //
 // The chosen contact.smooth is the least level at which the overlap in the middle of the patch is as deep as
 // 2.5 sagittas of what is left, h²/(8 R · 4^level). It is 2 in a hollow, where pressures are low beside E
-// h/R, and 1 where a is not known. Quadratic elements have their own curved edges.
+// h/R, and 1 where a is not known. Quadratic elements with straight edges stay as they are: nodes between
+// corners are no points of a round surface.
 #ifndef TETLAP_FEM_MODEL_COMPLIANCE_COMPLIANCE_H
 #define TETLAP_FEM_MODEL_COMPLIANCE_COMPLIANCE_H
 
