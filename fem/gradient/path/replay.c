@@ -16,8 +16,8 @@ enum { MAX_ITERATIONS = 30, STICKS = 1, SLIPS = 2 };
 // A step is balanced once Newton's method with the matrix there, which is near J or corrected by GMRES, does
 // not halve what is left, which is then at most this share of the largest force.
 static const double LEAST_FALL = 0.5, BALANCE = 1e-9;
-// The matrix's factor serves on while each step by it leaves at most this; below that share of the largest
-// force nothing is left but rounding.
+// The matrix's factor serves on while two steps by it leave at most the square of this, since mixing needs
+// one step to make the next one swift; below that share of the largest force nothing more is asked for.
 static const double SWIFT = 0.25, ROUNDED = 1e-12;
 // Of a system that GMRES solves, the share of the right side that may be left; and how far coordinates move
 // for a difference of forces, as a share of the mean edge.
@@ -140,7 +140,9 @@ Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemRepl
   TRY(create_yields(replay));
   TRY(create_krylov(replay));
   TRY(fem_mixing_create(&replay->mixing, replay->n));
-  return fem_equilibrium_create(&replay->equilibrium, &replay->system, &replay->state, &fem_solver_cholmod);
+  TRY(fem_equilibrium_create(&replay->equilibrium, &replay->system, &replay->state, &fem_solver_cholmod));
+  fem_solver_cholmod.be_rough(replay->equilibrium.solver);
+  return STATUS_OK;
 }
 
 void fem_replay_destroy(FemReplay *replay) {
@@ -248,14 +250,16 @@ static Status balance(FemReplay *replay, int k, FemReplayWay way) {
   double *u = u_of(replay, k), *v = v_of(replay, k);
   fem_mixing_forget(&replay->mixing);
   TRY(find_residual(replay, k, &left));
+  double last = left / (SWIFT * SWIFT * SWIFT); // the first step may leave more than there was
   for (int i = 0; i < MAX_ITERATIONS && left > 0; i++) {
-    double last = left;
+    double earlier = last;
+    last = left;
     bool is_newton = way.is_fresh && (replay->is_near || way.is_corrected), was_fresh = way.is_fresh;
     TRY(find_step(replay, time, u, v, c, way));
     for (size_t j = 0; j < n; j++) u[j] += replay->step[j];
     TRY(find_residual(replay, k, &left));
     double scale = scale_of(replay, k, c);
-    way.is_fresh = !(left <= SWIFT * last);
+    way.is_fresh = !(left <= SWIFT * (way.is_mixed ? SWIFT * earlier : last));
     way.is_corrected = way.is_corrected || (way.is_fresh && was_fresh && !replay->is_near);
     if (!(left <= BALANCE * scale)) continue;
     if (left > ROUNDED * scale && (left <= LEAST_FALL * last || !is_newton)) continue;

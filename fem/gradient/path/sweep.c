@@ -7,12 +7,11 @@
 #include "base/memory.h"
 #include "fem/sparse/vector.h"
 
-// Of a system that GMRES solves, the share of the right side that may be left.
-static const double RESIDUAL = 1e-14;
-// The same, of one that is solved with the factor of a later step.
-static const double KEPT = 1e-11;
-// A factor of a later step serves on until GMRES takes more directions: a new one costs about as much.
-enum { MOST_DIRECTIONS = 8 };
+// Of a step's right side, the share that may be left; of that, what GMRES' own estimate may be. What is left
+// beyond it is solved for again.
+static const double RESIDUAL = 1e-12, AIM = 0.5;
+// A factor of a later step serves on until GMRES takes more directions: a new one costs more than as many.
+enum { MOST_DIRECTIONS = 8, MAX_ROUNDS = 3 };
 
 size_t fem_sweep_value_count(const FemSweep *sweep) {
   return 3 * (size_t)sweep->replay.system.model->vertex_count;
@@ -47,7 +46,8 @@ void fem_sweep_destroy(FemSweep *sweep) {
   fem_tangent_destroy(&sweep->tangent);
   fem_varied_destroy(&sweep->varied);
   fem_replay_destroy(&sweep->replay);
-  void *arrays[] = {sweep->goals, sweep->lambda, sweep->weight, sweep->slope, sweep->right, sweep->factors};
+  void *arrays[] = {sweep->goals, sweep->lambda,     sweep->weight, sweep->slope,
+                    sweep->right, sweep->correction, sweep->factors};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
 }
 
@@ -86,8 +86,10 @@ Status fem_sweep_create(FemSweep *sweep, const FemModel *model, const FemGradien
   sweep->weight = memory_zeroed(values, sizeof(double));
   sweep->slope = memory_zeroed(goals * values, sizeof(double));
   sweep->right = memory_zeroed(n, sizeof(double));
+  sweep->correction = memory_zeroed(n, sizeof(double));
   sweep->factors = memory_zeroed(terms, sizeof(double));
-  if (!sweep->goals || !sweep->lambda || !sweep->weight || !sweep->slope || !sweep->right || !sweep->factors)
+  if (!sweep->goals || !sweep->lambda || !sweep->weight || !sweep->slope || !sweep->right ||
+      !sweep->correction || !sweep->factors)
     return status_no_memory("the adjoint of a run");
   for (size_t g = 0; g < goals; g++) TRY(create_goal(sweep, &sweep->goals[g]));
   TRY(fem_damping_create(&sweep->damping, &sweep->replay.system));
@@ -146,26 +148,6 @@ static Status factorise(FemSweep *sweep) {
   return fem_replay_factorise(&sweep->replay, sweep->step);
 }
 
-static Status solve_with_factor(FemSweep *sweep, double *beta, double *residual) {
-  Status status = fem_krylov_solve(&sweep->krylov, sweep->right, RESIDUAL, beta, residual);
-  sweep->is_spent = sweep->is_spent || status || sweep->krylov.directions > MOST_DIRECTIONS;
-  return status;
-}
-
-// With the factor of a later step, if it serves; else with this one's, which all goals share.
-static Status solve(FemSweep *sweep, double *beta, double *residual) {
-  *residual = 0;
-  memset(beta, 0, (size_t)sweep->replay.n * sizeof *beta);
-  if (fem_vector_dot(sweep->replay.n, sweep->right, sweep->right) == 0) return STATUS_OK; // after all terms
-  if (sweep->factorised > 0 && (!sweep->is_spent || sweep->factorised == sweep->step)) {
-    Status status = solve_with_factor(sweep, beta, residual);
-    bool is_fresh = sweep->factorised == sweep->step;
-    if (is_fresh || (status && status != STATUS_SOLVER) || (!status && *residual <= KEPT)) return status;
-  }
-  TRY(factorise(sweep));
-  return solve_with_factor(sweep, beta, residual);
-}
-
 bool fem_sweep_is_last(const FemSweep *sweep) {
   return sweep->step == sweep->replay.steps->count - 1;
 }
@@ -182,13 +164,60 @@ double fem_sweep_rate(const FemSweep *sweep, int g, size_t dof) {
   return is_damped(sweep) ? sweep->goals[g].damping.rate[dof] : 0;
 }
 
-// What friction, damping and plasticity have by λ = −β.
-static Status pull_step(FemSweep *sweep, FemSweepGoal *goal, const double *beta) {
-  fem_sweep_spread(sweep, beta, -1);
+// What friction, damping, plasticity and all the rest have by λ = −x, in addition.
+static Status pull_step(FemSweep *sweep, int g, const double *x) {
+  FemSweepGoal *goal = &sweep->goals[g];
+  double *slope = sweep->slope + fem_sweep_value_count(sweep) * (size_t)g;
+  fem_sweep_spread(sweep, x, -1);
   TRY(fem_damping_pull(&goal->damping, sweep->lambda, 1));
   fem_yielding_pull(&goal->yielding, sweep->lambda, 1);
-  if (!fem_sweep_has_friction(sweep)) return STATUS_OK;
-  return fem_friction_pull(&goal->friction, CONTACT_ALL_INTERFACES, sweep->lambda, 1);
+  if (fem_sweep_has_friction(sweep))
+    TRY(fem_friction_pull(&goal->friction, CONTACT_ALL_INTERFACES, sweep->lambda, 1));
+  TRY(fem_tangent_pull(&sweep->tangent, sweep->lambda, sweep->weight));
+  for (size_t i = 0; i < fem_sweep_value_count(sweep); i++) slope[i] -= sweep->weight[i];
+  return STATUS_OK;
+}
+
+// What is left of the step's system with a β that has been pulled; returns its length.
+static double find_left(FemSweep *sweep, int g, const double *beta) {
+  const FemSweepGoal *goal = &sweep->goals[g];
+  const int *dofs = sweep->replay.system.numbering.dof_of_unknown;
+  double c = fem_replay_formula(&sweep->replay, sweep->step).c;
+  const double *s = of_step(sweep, goal->alpha, sweep->step);
+  for (int i = 0; i < sweep->replay.n; i++)
+    sweep->right[i] = -c * (s[i] + fem_sweep_rate(sweep, g, (size_t)dofs[i]) +
+                            c * fem_replay_mass(&sweep->replay, i) * beta[i]) -
+                      fem_sweep_carried(sweep, goal->alpha, sweep->step, i) -
+                      fem_sweep_slope(sweep, g, (size_t)dofs[i]);
+  return sqrt(fem_vector_dot(sweep->replay.n, sweep->right, sweep->right));
+}
+
+// β and `left` by the factor that is there.
+static Status correct(FemSweep *sweep, int g, double share, double *beta, double *left) {
+  TRY(fem_krylov_solve(&sweep->krylov, sweep->right, share, sweep->correction, NULL));
+  for (int i = 0; i < sweep->replay.n; i++) beta[i] += sweep->correction[i];
+  TRY(pull_step(sweep, g, sweep->correction));
+  *left = find_left(sweep, g, beta);
+  return STATUS_OK;
+}
+
+// β, and what is left of the right side. With the factor of a later step, if it serves; else with this one's,
+// which all goals share.
+static Status solve(FemSweep *sweep, int g, double *beta, double *residual) {
+  *residual = 0;
+  memset(beta, 0, (size_t)sweep->replay.n * sizeof *beta);
+  double whole = find_left(sweep, g, beta), left;
+  if (whole == 0) return STATUS_OK; // after all terms
+  left = whole;
+  for (int round = 0; round < MAX_ROUNDS && !(left <= RESIDUAL * whole); round++) {
+    if (sweep->factorised == 0 || (sweep->is_spent && sweep->factorised != sweep->step))
+      TRY(factorise(sweep));
+    Status status = correct(sweep, g, AIM * RESIDUAL * whole / left, beta, &left);
+    sweep->is_spent = sweep->is_spent || status || sweep->krylov.directions > MOST_DIRECTIONS;
+    if (status && (status != STATUS_SOLVER || sweep->factorised == sweep->step)) return status;
+  }
+  *residual = left / whole;
+  return STATUS_OK;
 }
 
 Status fem_sweep_solve_step(FemSweep *sweep, int g, double *largest) {
@@ -197,20 +226,11 @@ Status fem_sweep_solve_step(FemSweep *sweep, int g, double *largest) {
   FemSweepGoal *goal = &sweep->goals[g];
   double *beta = fem_sweep_beta(sweep, goal), *alpha = of_step(sweep, goal->alpha, k);
   const int *dofs = sweep->replay.system.numbering.dof_of_unknown;
-  for (int i = 0; i < sweep->replay.n; i++) {
-    double s = fem_replay_mass(&sweep->replay, i) * fem_sweep_carried(sweep, goal->beta, k, i);
-    sweep->right[i] = -c * (s + fem_sweep_rate(sweep, g, (size_t)dofs[i])) -
-                      fem_sweep_carried(sweep, goal->alpha, k, i) -
-                      fem_sweep_slope(sweep, g, (size_t)dofs[i]);
-    alpha[i] = s;
-  }
-  TRY(solve(sweep, beta, &residual));
+  for (int i = 0; i < sweep->replay.n; i++)
+    alpha[i] = fem_replay_mass(&sweep->replay, i) * fem_sweep_carried(sweep, goal->beta, k, i);
+  TRY(solve(sweep, g, beta, &residual));
   TRY(fem_gradient_judge(residual, sweep->replay.steps->times[k]));
   *largest = fmax(*largest, residual);
-  TRY(pull_step(sweep, goal, beta));
-  TRY(fem_tangent_pull(&sweep->tangent, sweep->lambda, sweep->weight));
-  for (size_t i = 0; i < fem_sweep_value_count(sweep); i++)
-    sweep->slope[fem_sweep_value_count(sweep) * (size_t)g + i] -= sweep->weight[i];
   for (int i = 0; i < sweep->replay.n; i++)
     alpha[i] += c * fem_replay_mass(&sweep->replay, i) * beta[i] + fem_sweep_rate(sweep, g, (size_t)dofs[i]);
   return STATUS_OK;

@@ -35,7 +35,8 @@ typedef struct FemSweep {
   double *slope;           // ∂g/∂x of each goal by itself            (goal_count, 3 V)
   double *factors;         // ∂g/∂q of the terms of all goals
   double *lambda, *weight; // scratch                                 (3 V)
-  double *right;           // scratch                                 (n)
+  double *right;           // what is left of the step's system       (n)
+  double *correction;      // scratch                                 (n)
   int step, factorised;    // where it is; of which step the factor is, 0: of none
   bool is_spent;           // that factor does not serve any more
 } FemSweep;

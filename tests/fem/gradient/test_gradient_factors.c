@@ -172,9 +172,10 @@ START_TEST(the_residual_that_is_told_is_that_of_the_worst_system) {
   find_steps(&asked, &steps);
   differentiate(&asked, false, &steps, &answer);
   for (int g = 0; g < answer.goal_count; g++) told = fmax(told, answer.gradient.residuals[g]);
-  ck_assert_near(told, largest_left, 1e-6 * largest_left);
+  ck_assert_near(told, largest_left,
+                 1e-2 * largest_left); // each is a difference of numbers 1e12 times as large
   ck_assert_double_gt(told, 0);
-  ck_assert_double_le(told, 1e-11);
+  ck_assert_double_le(told, 1e-12);
   destroy(&answer);
   fem_replay_steps_destroy(&steps);
 }
