@@ -14,6 +14,15 @@ import numpy as np
 sys.path.insert(0, str(Path(os.environ["TETLAP_SOURCE_DIR"], "examples", "python")))
 
 
+def write_box(file, low, high):
+    """A box of six tetrahedra round its diagonal, as .msh 2.2."""
+    corners = [[(low, high)[i >> axis & 1][axis] for axis in range(3)] for i in range(8)]
+    ways = [(1, 3), (3, 2), (2, 6), (6, 4), (4, 5), (5, 1)]  # round 0 to 7
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", "8", *(f"{i + 1} {x} {y} {z}" for i, (x, y, z) in enumerate(corners)),
+             "$EndNodes", "$Elements", "6", *(f"{k + 1} 4 2 0 1 1 {a + 1} {b + 1} 8" for k, (a, b) in enumerate(ways)), "$EndElements"]
+    file.write_text("\n".join(lines) + "\n")
+
+
 class Examples(unittest.TestCase):
     def test_remap_keeps_the_integral_and_constants(self):
         import remap
@@ -66,6 +75,22 @@ class Examples(unittest.TestCase):
         self.assertLess(way[-1, 2], 0)  # below the table
         self.assertLess(np.linalg.norm(way[-1, :2] - throw.BOWL), 0.1)
         self.assertLess(np.linalg.norm(way[-1] - way[-6]), 0.05)  # in the last 0.1 s [m]
+
+    def test_published_problems_are_read_from_their_folder_and_solved(self):
+        import published
+
+        with tempfile.TemporaryDirectory() as folder:
+            rabbit = ([-0.05, 0, -0.05], [0.05, 0.1, 0.05])
+            for name, ground, box in (("fig1_bunnies", "flat-pool", ([-10, -0.5, -10], [10, -0.01, 10])),
+                                      ("fig21_friction_bunny", "slide", ([-4, -1, -4], [5, -0.14, 6]))):
+                Path(folder, name).mkdir()
+                write_box(Path(folder, name, "stanford-bunny.obj_.msh"), *rabbit)
+                write_box(Path(folder, name, f"{ground}.msh"), *box)
+            points, losses = published.main(folder, "slide", most=6)
+            self.assertLess(abs(points[-1][0] - published.FRICTION), 0.01)
+            self.assertLess(losses[-1], 0.01 * losses[0])
+            points, losses = published.main(folder, "bunnies", most=2)
+            self.assertLess(losses[-1], 0.5 * losses[0])
 
     def test_a_descent_refuses_a_start_without_a_value_and_ends_where_there_is_no_slope(self):
         import descent
