@@ -30,24 +30,24 @@ typedef struct Work {
 
 // ---- What is deep.
 
-// Of that side's element in the other cell or shape, as a share of the way to its middle.
-static double reach_of(const ContactLayout *layout, const ContactPair *pair, const ContactFieldPair *field,
-                       int side, const double *middles) {
+// Of what that side's element is in: a cell or a shape.
+static double middle_of(const ContactLayout *layout, const ContactPair *pair, int side,
+                        const double *middles) {
   int other = pair->cells[1 - side];
-  double middle = other < 0
-                      ? contact_shape_middle(&layout->def.shapes[layout->interfaces[pair->interface].shape])
-                      : middles[other];
-  return field->depths[1 - side] / middle;
+  return other < 0 ? contact_shape_middle(&layout->def.shapes[layout->interfaces[pair->interface].shape])
+                   : middles[other];
 }
 
 void contact_meetings_mark(const ContactLayout *layout, const ContactEvaluation *evaluation,
-                           const double *middles, double least, bool *is_marked) {
+                           const double *middles, double least, double way, bool *is_marked) {
   for (int k = 0; k < evaluation->pair_count; k++) {
     const ContactPair *pair = &evaluation->pairs[k];
     if (is_marked[pair->interface]) continue;
-    for (int side = 0; side < 2; side++)
-      if (pair->cells[side] >= 0 && !(reach_of(layout, pair, &evaluation->fields[k], side, middles) < least))
-        is_marked[pair->interface] = true;
+    for (int side = 0; side < 2; side++) {
+      if (pair->cells[side] < 0) continue;
+      double middle = middle_of(layout, pair, side, middles), depth = evaluation->fields[k].depths[1 - side];
+      if (!(depth < least * middle) || middle - depth <= way) is_marked[pair->interface] = true;
+    }
   }
 }
 
@@ -147,7 +147,8 @@ static void add_item(const Work *work, int item, ContactMeeting *meeting) {
   vec3_accumulate(meeting->slope, vec3_scale(field->weighed[side], slope));
   meeting->size += field->weighed[side] * vec3_length(slope);
   if (work->middles)
-    meeting->reach = fmax(meeting->reach, reach_of(layout, pair, field, side, work->middles));
+    meeting->reach =
+        fmax(meeting->reach, field->depths[1 - side] / middle_of(layout, pair, side, work->middles));
 }
 
 // Adds the element's parts without what is met in them, but `cell_end` counts their cells. Of each item, the

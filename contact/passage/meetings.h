@@ -35,10 +35,10 @@ typedef struct ContactMeetings {
 
 void contact_meetings_destroy(ContactMeetings *meetings); // also of a zeroed one
 
-// Marks the interfaces in which an element reaches at least this share of the way to the middle. `middles`:
-// of each cell, the depth of the middle there [m].
+// Marks the interfaces in which an element reaches at least this share of the way to the middle, or has at
+// most `way` [m] left to it. `middles`: of each cell, the depth of the middle there [m].
 void contact_meetings_mark(const ContactLayout *layout, const ContactEvaluation *evaluation,
-                           const double *middles, double least, bool *is_marked);
+                           const double *middles, double least, double way, bool *is_marked);
 
 // Of the pairs of marked interfaces, in place of what was there. `middles` NULL: there are no depths. Volumes
 // below `rounding` of the lesser cell's have no direction and no depth. STATUS_MEMORY.

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/evaluation.h"
+#include "contact/limits.h"
 #include "contact/surface/middle.h"
 
 // |h| from which on a direction is one, and the part of h along the kept direction, or against it, from which
@@ -50,8 +51,8 @@ static bool is_deep(const ContactMeeting *meeting, bool has_field) {
   return meeting->reach > REACH && meeting->covered > cube(REACH);
 }
 
-// Whether the element may have come from one side of the middle to the other since the last state: it moves
-// by the margin at most.
+// Whether the element may have come from one side of the middle to the other since the state where the lists
+// were made, which was judged, too: it moves by the margin at most.
 static bool may_cross(const ContactPassage *passage, const ContactMeeting *meeting, double margin) {
   if (!passage->middles || meeting->cell < 0) return true;
   return passage->middles[meeting->cell] * (1 - meeting->reach) <= margin;
@@ -192,21 +193,45 @@ static void match(ContactPassage *passage, const ContactSystem *system) {
   leave_before(passage, system, &i, INT_MAX, INT_MAX);
 }
 
-// Of each interface: without depths, where an element reaches half as deep as one that may turn, or where one
-// may turn or has.
+// By how much elements move from one accepted state to the next at most [m]. The lists hold for the margin,
+// and the first of the states may have used up the share of one step, in any direction.
+static double longest_way(const ContactLayout *layout) {
+  return layout->margin + layout->margin / CONTACT_STEPS_AHEAD;
+}
+
+// Of each interface: without depths; where an element reaches half as deep as one that may turn, or may have
+// crossed the middle at the next state; where one of the list may turn or has.
 static Status follow(ContactPassage *passage, const ContactLayout *layout,
-                     const ContactEvaluation *evaluation) {
+                     const ContactEvaluation *evaluation, const ContactPassageList *list) {
   size_t count = (size_t)layout->interface_count;
   if (!memory_reserve((void **)&passage->is_followed, &passage->followed_capacity, count,
                       sizeof *passage->is_followed))
     return status_no_memory("elements that pass through bodies");
   for (size_t i = 0; i < count; i++) passage->is_followed[i] = !passage->middles;
-  for (int i = 0; i < passage->now.count; i++) {
-    const ContactPassageEntry *entry = &passage->now.entries[i];
+  for (int i = 0; i < list->count; i++) {
+    const ContactPassageEntry *entry = &list->entries[i];
     if (entry->is_turned || entry->is_deep) passage->is_followed[entry->interface] = true;
   }
   if (passage->middles)
-    contact_meetings_mark(layout, evaluation, passage->middles, REACH / 2, passage->is_followed);
+    contact_meetings_mark(layout, evaluation, passage->middles, REACH / 2, longest_way(layout),
+                          passage->is_followed);
+  return STATUS_OK;
+}
+
+// Of `next`, what a second look at the state would not follow; an interface at rest has no meetings to judge
+// by.
+static Status drop(ContactPassage *passage, const ContactSystem *system,
+                   const ContactEvaluation *evaluation) {
+  ContactPassageList *next = &passage->next;
+  const int count = next->count;
+  if (count == 0) return STATUS_OK;
+  TRY(follow(passage, contact_system_layout(system), evaluation, next));
+  next->count = 0;
+  for (int i = 0; i < count; i++) {
+    const ContactPassageEntry entry = next->entries[i];
+    if (passage->is_followed[entry.interface] || contact_system_is_resting(system, entry.interface))
+      append(next, &entry);
+  }
   return STATUS_OK;
 }
 
@@ -221,12 +246,12 @@ Status contact_passage_look(ContactPassage *passage, const ContactSystem *system
   passage->passed.elements = 0;
   passage->next.count = 0;
   TRY(find_middles(passage, layout));
-  TRY(follow(passage, layout, evaluation));
+  TRY(follow(passage, layout, evaluation, &passage->now));
   TRY(contact_meetings_find(&passage->meetings, layout, evaluation, passage->middles, rounding(),
                             passage->is_followed));
   TRY(reserve(&passage->next, (size_t)passage->meetings.count + (size_t)passage->now.count));
   match(passage, system);
-  return STATUS_OK;
+  return drop(passage, system, evaluation);
 }
 
 void contact_passage_accept(ContactPassage *passage) {

@@ -19,16 +19,16 @@
 //
 // Turned. h is opposed where its component along the kept direction is below −½. An element is turned once h
 // is opposed while the element is deep inside, or was before h became opposed and the middle of B is no
-// farther than the margin of contact's lists, by which it moves at most in a step. It has gone beyond the
-// middle of B then, and is pushed out on the other side. It is no longer turned once that component is above
-// ½. An element that leaves B while it is turned has passed through.
+// farther than the margin of contact's lists, by which it moves at most while they hold. It has gone beyond
+// the middle of B then, and is pushed out on the other side. It is no longer turned once that component is
+// above ½. An element that leaves B while it is turned has passed through.
 //
 // Parts of B. Where B has several layers, or a slot, the element meets parts of B
 // (contact/passage/meetings.h) that press it from opposite sides, and their shares change. So h is that of
 // one part, and the element keeps one direction for each part. At the next accepted state a part is followed
 // by its cell, the one that the element met most of. It goes on in the part that has this cell, else in the
 // one whose cells have the most vertices in common with it. After a fast slide there is neither: then it goes
-// on in one that lies at rest no farther from it than the margin of contact's lists, which bounds the step.
+// on in one that lies at rest no farther from it than the margin of contact's lists.
 // Where two parts go on in one, one entry stays: the one that is turned, else has a direction, else has been
 // deep inside, else has the direction that fits best.
 //
@@ -39,8 +39,10 @@
 //   covered  the volume that the two share, over that of the element or of the cells that it meets, whichever
 //            is less. It must be a thousandth; without a depth (`nodal`) a tenth, and reach is not asked.
 //
-// An interface is followed from where an element reaches half of that, and while one is deep inside or
-// turned. Where all touch more lightly the kept directions would be those of the present state.
+// An interface is followed while an element reaches half of that, may come to the middle in the next step, or
+// is deep inside or turned. The way of a step is one and a half times the margin at most: half of it may be
+// used up, in any direction, where the step begins. Where all touch more lightly the kept directions would be
+// those of the present state.
 //
 // Below a millionth the centroid and the depth of an overlap are those of rounding: such a pair counts for
 // nothing, and such an element keeps no direction.

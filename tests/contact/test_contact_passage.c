@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "contact/passage/passage.h"
+#include "contact/shape/convex.h"
 #include "contact/surface/middle.h"
 #include "overlap/models.h"
 
@@ -132,9 +133,9 @@ START_TEST(what_touches_lightly_is_not_followed) {
   const double depths[] = {0.003, 0.06};
   for (int k = 0; k < 2; k++) {
     Scene scene = {.shape_count = 0};
-    blocks_add(&scene.blocks, &(BlockDef){.cell = {0.5, 0.5, 0.15}, .cells = {4, 4, 2}});
+    blocks_add(&scene.blocks, &(BlockDef){.cell = {0.5, 0.5, 0.5}, .cells = {4, 4, 4}});
     blocks_add(&scene.blocks,
-               &(BlockDef){.corner = {0.81, 0.77, 0.31}, .cell = {0.4, 0.4, 0.4}, .cells = {1, 1, 1}});
+               &(BlockDef){.corner = {0.21, 0.17, 2.01}, .cell = {0.5, 0.5, 0.5}, .cells = {3, 3, 3}});
     start(&scene);
     move(&scene, 1, (const double[]){0, 0, -0.01 - depths[k]});
     ck_assert_int_gt(evaluated_at(scene.system, 0, scene.blocks.x)->pair_count, 0);
@@ -168,6 +169,47 @@ START_TEST(what_has_been_deep_inside_turns_however_long_it_stays_near_the_other_
     ck_assert_int_gt(scene.passed, 0);
     destroy(&scene);
   }
+}
+END_TEST
+
+// A plate as thin as a step is long, in one step: from a light touch to near the other side.
+START_TEST(what_jumps_through_a_thin_plate_from_a_light_touch_has_passed) {
+  Scene scene = {.shape_count = 0};
+  blocks_add(&scene.blocks, &(BlockDef){.cell = {0.5, 0.5, 0.2}, .cells = {4, 4, 1}});
+  blocks_add(&scene.blocks,
+             &(BlockDef){.corner = {0.81, 0.77, 0.21}, .cell = {0.4, 0.4, 0.1}, .cells = {1, 1, 1}});
+  start(&scene);
+  ck_assert_double_gt(contact_system_layout(scene.system)->margin, 0.15);
+  move(&scene, 1, (const double[]){0, 0, -0.013});
+  move(&scene, 1, (const double[]){0, 0, -0.15});
+  ck_assert_int_gt(contact_passage_turned(&scene.passage).elements, 0);
+  move(&scene, 2, (const double[]){0, 0, -0.2});
+  ck_assert_int_gt(scene.passed, 0);
+  destroy(&scene);
+}
+END_TEST
+
+// From where the lists were made, which hold for .2, a light touch is .055 back and the middle of the box .16
+// ahead.
+START_TEST(what_turns_back_to_a_light_touch_and_jumps_beyond_the_middle_is_turned) {
+  ContactConvex box;
+  contact_convex_make_box(&box, (const double[]){1, 1, 0.22});
+  Scene scene = {.shape = {.kind = CONTACT_SHAPE_CONVEX,
+                           .convex = &box,
+                           .point = {0, 0, -0.22},
+                           .axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+                 .shape_count = 1,
+                 .margin = 0.2};
+  blocks_add(&scene.blocks,
+             &(BlockDef){.corner = {-0.021, -0.019, 0.01}, .cell = {0.02, 0.02, 0.01}, .cells = {2, 2, 2}});
+  start(&scene);
+  move(&scene, 1, (const double[]){0, 0, -0.07});
+  move(&scene, 1, (const double[]){0, 0, 0.055});
+  ck_assert_int_gt(scene.passage.now.count, 0);
+  ck_assert_int_eq(scene.most_turned, 0);
+  move(&scene, 1, (const double[]){0, 0, -0.25});
+  ck_assert_int_gt(contact_passage_turned(&scene.passage).elements, 0);
+  destroy(&scene);
 }
 END_TEST
 
@@ -215,6 +257,15 @@ END_TEST
 
 START_TEST(a_second_look_at_a_state_changes_nothing) {
   Scene scene = {.looks_again = true};
+  blocks_add(&scene.blocks, &(BlockDef){.cell = {0.5, 0.5, 0.5}, .cells = {4, 4, 4}});
+  blocks_add(&scene.blocks,
+             &(BlockDef){.corner = {0.81, 0.77, 2.01}, .cell = {0.2, 0.2, 0.2}, .cells = {1, 1, 1}});
+  start(&scene);
+  move(&scene, 1, (const double[]){0, 0, -0.26}); // deep
+  ck_assert_int_gt(scene.passage.now.count, 0);
+  move(&scene, 1, (const double[]){0, 0, 0.245}); // and out again, to a light touch
+  destroy(&scene);
+  scene = (Scene){.looks_again = true};
   cross_in_jumps(&scene, 0.5, 2);
   destroy(&scene);
   start_plate_and_block(&scene, 1);
@@ -432,6 +483,8 @@ int main(void) {
   tcase_add_test(cases, what_enters_by_a_third_and_comes_back_has_not);
   tcase_add_test(cases, what_lies_between_two_layers_has_not_passed_either);
   tcase_add_test(cases, what_has_been_deep_inside_turns_however_long_it_stays_near_the_other_side);
+  tcase_add_test(cases, what_jumps_through_a_thin_plate_from_a_light_touch_has_passed);
+  tcase_add_test(cases, what_turns_back_to_a_light_touch_and_jumps_beyond_the_middle_is_turned);
   tcase_add_test(cases, what_a_step_cannot_carry_to_the_other_side_is_not_turned);
   tcase_add_test(cases, a_second_look_at_a_state_changes_nothing);
   tcase_add_test(cases, where_parts_become_one_what_may_turn_is_not_forgotten);
