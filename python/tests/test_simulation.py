@@ -373,7 +373,20 @@ class Refusals(unittest.TestCase):
     def test_one_that_a_callback_closes_is_closed(self):
         sim = opened()
         sim.on_step(lambda it: it.close())
-        with self.assertRaisesRegex(tetlap.Error, "is closed"):
+        for _ in range(2):
+            with self.assertRaisesRegex(tetlap.Error, "is closed$"):
+                sim.advance(0.05)
+
+    def test_what_a_callback_raises_after_it_closed_is_raised(self):
+        def leave(it):
+            it.close()
+            raise KeyError("mine")
+
+        sim = opened()
+        sim.on_step(leave)
+        with self.assertRaisesRegex(KeyError, "mine"):
+            sim.advance(0.05)
+        with self.assertRaisesRegex(tetlap.Error, "is closed$"):
             sim.advance(0.05)
 
     def test_copies_are_refused_and_leave_the_run_alone(self):

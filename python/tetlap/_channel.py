@@ -139,7 +139,8 @@ class Channel:
                 stop = self._call(on_step)
             except Exception as error:  # the run stops after this step and can be used
                 raised, stop = error, True
-            self._check()  # a callback may have closed it
+            if not self.is_open:  # a callback has closed it
+                raise _Raised(raised or Error("this Simulation is closed"))
             self._send(_REQUEST.pack(GO, 0, 0, 1 if stop else 0))
         if code in (_USAGE, _INPUT) and what != HELLO:
             raise _Refused(text)
