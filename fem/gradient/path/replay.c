@@ -111,6 +111,15 @@ static size_t history_count(const FemReplay *replay) {
   return rows * (size_t)replay->system.effect_count;
 }
 
+// A solver keeps its order of elimination, so that one which goes on adds up otherwise than one which begins.
+static Status create_solver(FemReplay *replay) {
+  fem_equilibrium_destroy(&replay->equilibrium);
+  TRY(fem_equilibrium_create(&replay->equilibrium, &replay->system, &replay->state, &fem_solver_cholmod));
+  fem_solver_cholmod.be_rough(replay->equilibrium.solver);
+  replay->has_factor = false;
+  return STATUS_OK;
+}
+
 Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemReplaySteps *steps) {
   *replay = (FemReplay){.steps = steps};
   TRY(fem_system_create(&replay->system, model));
@@ -140,9 +149,7 @@ Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemRepl
   TRY(create_yields(replay));
   TRY(create_krylov(replay));
   TRY(fem_mixing_create(&replay->mixing, replay->n));
-  TRY(fem_equilibrium_create(&replay->equilibrium, &replay->system, &replay->state, &fem_solver_cholmod));
-  fem_solver_cholmod.be_rough(replay->equilibrium.solver);
-  return STATUS_OK;
+  return create_solver(replay);
 }
 
 void fem_replay_destroy(FemReplay *replay) {
@@ -393,8 +400,7 @@ static Status begin_anew(FemReplay *replay, int k) {
     if (history->count > 0) TRY(fem_system_remember(system, e, history->values, history->count));
   }
   replay->state.last = &system->accepted;
-  replay->has_factor = false;
-  return STATUS_OK;
+  return create_solver(replay);
 }
 
 // ---- Segments.

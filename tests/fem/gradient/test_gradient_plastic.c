@@ -48,19 +48,14 @@ START_TEST(a_damped_block_that_slides_and_yields_agrees_with_differences_of_repl
 }
 END_TEST
 
-// Segments that are done again yield the same.
-START_TEST(segments_of_a_block_that_yields_give_the_same_gradient) {
-  const Asked asked = {.scene = "gradient_motion",
-                       .setting = UPPER "plasticity={yield: 1e3, hardening: 2e4}",
-                       .of = {"displacement:upper:z"},
-                       .by = {UPPER "plasticity.yield"}};
+static void check_segments(const Asked *asked) {
   FemReplaySteps steps;
   Answer whole, cut;
-  find_steps(&asked, &steps);
-  replay(&asked, &steps, NULL, true, &whole);
+  find_steps(asked, &steps);
+  replay(asked, &steps, NULL, true, &whole);
   steps.most = steps.bytes / 2;
   ck_assert_int_gt(fem_replay_steps_plan(&steps).segment_count, 1);
-  replay(&asked, &steps, NULL, true, &cut);
+  replay(asked, &steps, NULL, true, &cut);
   ck_assert(whole.gradient.derivatives[0] != 0);
   ck_assert(whole.gradient.derivatives[0] == cut.gradient.derivatives[0]);
   ck_assert_int_gt(whole.gradient.yields, 0);
@@ -68,6 +63,24 @@ START_TEST(segments_of_a_block_that_yields_give_the_same_gradient) {
   destroy(&whole);
   destroy(&cut);
   fem_replay_steps_destroy(&steps);
+}
+
+// Segments that are done again yield the same.
+START_TEST(segments_of_a_block_that_yields_give_the_same_gradient) {
+  check_segments(&(const Asked){.scene = "gradient_motion",
+                                .setting = UPPER "plasticity={yield: 1e3, hardening: 2e4}",
+                                .of = {"displacement:upper:z"},
+                                .by = {UPPER "plasticity.yield"}});
+}
+END_TEST
+
+// Friction couples more vertices in the matrix than there are at first.
+START_TEST(segments_of_a_damped_block_that_slides_and_yields_give_the_same_gradient) {
+  check_segments(&(const Asked){.scene = "gradient_damped",
+                                .setting = UPPER "plasticity={yield: 1e3, hardening: 2e4}",
+                                .overlap = "contact.friction=0.3",
+                                .of = {"energy"},
+                                .by = {UPPER "young"}});
 }
 END_TEST
 
@@ -77,5 +90,6 @@ int main(void) {
   tcase_add_test(test_case, a_block_that_yields_as_it_strikes_agrees_with_differences_of_replays);
   tcase_add_test(test_case, a_damped_block_that_slides_and_yields_agrees_with_differences_of_replays);
   tcase_add_test(test_case, segments_of_a_block_that_yields_give_the_same_gradient);
+  tcase_add_test(test_case, segments_of_a_damped_block_that_slides_and_yields_give_the_same_gradient);
   return suite_run("gradient_plastic", test_case, 300);
 }
