@@ -43,17 +43,21 @@
 // OVERLAP_CLIP_LEAST_SINE: up to there ∇²V is exact, beyond it is bounded and understates how fast ∇V turns.
 // Symmetric and unchanged by a translation it is in any case.
 //
-// Accuracy: |δV| ≤ 1e-9 V, or 1e-12 of the smaller tetrahedron where V is less than 1e-6 of that. With ν,
-// noise, what rounding may do to det · λ, and L the longest difference of coordinates (ν ∝ L³),
+// Accuracy: |δV| ≤ 1e-9 V, or 1e-12 of the smaller tetrahedron where V is less than 1e-6 of that. With L the
+// longest difference of coordinates and L_A four times the root of A's squared edges, or L if that is less:
+// n_f is of edges of A, and λ_f its product with a difference, so rounding does ν_A ∝ L_A² L to det_A · λ.
+// And
 //
-//   |δV| ≤ ν/2 Σ_{f of A} φ_f (1 + L³/(256 |det_B|)) + ν/2 Σ_{g of B} φ_g (1 + L³/(256 |det_A|)).
+//   |δV| ≤ ½ Σ_{f of A} φ_f (ν_A + ν_B L_A² L_B/(256 |det_B|))
+//        + ½ Σ_{g of B} φ_g (ν_B + ν_A L_B² L_A/(256 |det_A|)).
 //
-// The ones are planes that move along their normals. The rest: λ of a flat tetrahedron tell a point's place
-// along its faces to ν/det of L only, and by so much the other's planes seem to have moved, if they stand
-// across. `clip`, which sums each face on its own, adds ν/8 λ_f(o) for each face that P has (lanes.h).
-// With |δV| so, the moment V x̄ is off by at most L |δV|: |δx̄| ≤ 1e-9 L where V is more than 1e-6 of the
-// smaller tetrahedron, and x̄ is within the boxes of both in any case. Rounding of well-shaped pairs leaves
-// |δx̄| ≤ 1e-12 L where V is more than 1e-4 of the smaller (tests/overlap/test_centroid.c).
+// The first are planes that move along their normals. The rest: λ of a flat tetrahedron tell a point's place
+// along its faces to ν_B/det_B of L_B only, and by so much the other's planes, of L_A², seem to have moved,
+// if they stand across. `clip`, which sums each face on its own, takes L for L_A and L_B and adds ν/8 λ_f(o)
+// for each face that P has (lanes.h). With |δV| so, the moment V x̄ is off by at most L |δV|: |δx̄| ≤ 1e-9 L
+// where V is more than 1e-6 of the smaller tetrahedron, and x̄ is within the boxes of both in any case.
+// Rounding of well-shaped pairs leaves |δx̄| ≤ 1e-12 L where V is more than 1e-4 of the smaller
+// (tests/overlap/test_centroid.c).
 //
 // Rounding decides whether there is a volume at all where V ≤ 64 of this bound's |δV| (without the last part)
 // or Σ φ ≤ 4096 ε: faces that lie on each other but for rounding have φ, and so ∇V, of an overlap. Such pairs

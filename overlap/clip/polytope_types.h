@@ -22,8 +22,9 @@ typedef struct OverlapClipEdge {
 
 typedef struct OverlapClipPolytope {
   OverlapClipFrame frame[2];
-  int subject;  // the tetrahedron that was clipped, 0 or 1; in its barycentric space edges turn outward
-  double noise; // what rounding may do to det · λ of any vertex in any plane [m³]
+  int subject;     // the tetrahedron that was clipped, 0 or 1; in its barycentric space edges turn outward
+  double own[2];   // L_A², L_B² of clip.h [m²]
+  double noise[2]; // ν_A, ν_B: what rounding may do to det · λ of any vertex in any plane of A, of B [m³]
   int vertex_count, edge_count;
   OverlapClipEdge edge[OVERLAP_CLIP_EDGES];
   double origin[8];                        // what vertices are relative to; zero at first

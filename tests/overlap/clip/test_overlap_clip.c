@@ -6,6 +6,7 @@
 
 #include "app/bench/overlap/pairs.h"
 #include "base/memory.h"
+#include "base/random.h"
 #include "datagen/hard.h"
 #include "overlap/clip/clip.h"
 #include "overlap/exact/exact.h"
@@ -237,6 +238,55 @@ START_TEST(accuracy_holds_from_fat_to_flat) {
 }
 END_TEST
 
+// A tetrahedron of random directions about a point, as thick as `share` of its size along one.
+static void draw_about(Random *random, const double middle[3], double size, double share, double tet[12]) {
+  double rotation[9];
+  random_rotation(random, rotation);
+  for (int v = 0; v < 4; v++) {
+    double at[3];
+    random_direction(random, at);
+    at[2] *= share;
+    for (int c = 0; c < 3; c++)
+      tet[3 * v + c] = middle[c] + size * (rotation[3 * c] * at[0] + rotation[3 * c + 1] * at[1] +
+                                           rotation[3 * c + 2] * at[2]);
+  }
+}
+
+// A cell of the ground, of some metres, and a small element about a point of one of its faces.
+static void draw_on_ground(Random *random, double small, double flat, double x[24]) {
+  double middle[3], share[4], sum = 0;
+  for (int c = 0; c < 3; c++) middle[c] = random_between(random, -5, 5);
+  draw_about(random, middle, random_between(random, 1, 7), random_between(random, 0.01, 1), x);
+  for (int v = 1; v < 4; v++) sum += share[v] = random_uniform(random);
+  for (int c = 0; c < 3; c++)
+    middle[c] = (share[1] * x[3 + c] + share[2] * x[6 + c] + share[3] * x[9 + c]) / sum;
+  draw_about(random, middle, small, flat, x + 12);
+}
+
+START_TEST(small_elements_on_large_cells_are_right_and_seldom_need_help) {
+  enum { PAIRS = 2000 };
+  static const double flats[3] = {1, 0.1, 0.001};
+  Random random = random_seeded(11, 0);
+  int helped = 0, met = 0;
+  for (int size = 0; size <= 6; size++)
+    for (int k = 0; k < PAIRS; k++) {
+      double x[24], expected, small = pow(10, -size / 3.0);
+      unsigned flags;
+      draw_on_ground(&random, small, flats[k % 3], x);
+      Answer answer = ask(x);
+      ck_assert_ok(
+          overlap_exact_ops.eval_pair(NULL, x, &(OverlapAnswer){.volume = &expected, .flags = &flags}));
+      ck_assert_msg(is_right(x, answer.volume, expected), "size %g, pair %d: %.17g, exact %.17g", small, k,
+                    answer.volume, expected);
+      if (small > 0.05 || k % 3 == 2 || !(expected > 1e-6 * overlap_invariant_smaller_volume(x))) continue;
+      met++;
+      helped += (answer.flags & OVERLAP_FALLBACK) != 0;
+    }
+  ck_assert_int_gt(met, PAIRS / 2);
+  ck_assert_int_lt(helped, met / 2);
+}
+END_TEST
+
 START_TEST(numbers_too_large_or_small_for_double_products_get_help) {
   for (int power = -340; power <= 340; power += 680) {
     DatagenHardPair pair = datagen_hard_make(2, 1);
@@ -295,6 +345,7 @@ int main(void) {
   tcase_add_test(cases, help_is_asked_for_slivers_touching_and_the_shallowest_only);
   tcase_add_test(cases, pairs_that_only_touch_get_nothing);
   tcase_add_test(cases, accuracy_holds_from_fat_to_flat);
+  tcase_add_test(cases, small_elements_on_large_cells_are_right_and_seldom_need_help);
   tcase_add_test(cases, numbers_too_large_or_small_for_double_products_get_help);
   tcase_add_test(cases, slivers_that_cross_are_as_exact_as_stated);
   return suite_run("overlap clip", cases, 30);
