@@ -44,7 +44,7 @@
 // Symmetric and unchanged by a translation it is in any case.
 //
 // Accuracy: |δV| ≤ 1e-9 V, or 1e-12 of the smaller tetrahedron where V is less than 1e-6 of that. With L the
-// longest difference of coordinates and L_A four times the root of A's squared edges, or L if that is less:
+// longest difference of coordinates and L_A 5.7 times the root of A's squared edges, or L if that is less:
 // n_f is of edges of A, and λ_f its product with a difference, so rounding does ν_A ∝ L_A² L to det_A · λ.
 // And
 //

@@ -15,10 +15,11 @@
 // the tests the errors of V correspond to at most 0.065 ε; this is 0.25.
 #define OVERLAP_CLIP_NOISE (0.25 * DBL_EPSILON)
 
-// L_A² of clip.h over A's squared edges from its first vertex. Rounding does about 5.3 ε |e||f| L at most to
-// det_A · λ of the face with edges e and f, and |e||f| is half of those squares at most: 11 in units of
-// OVERLAP_CLIP_NOISE. In a search among small elements on large cells some V were wrong with ½.
-#define OVERLAP_CLIP_OWN 16.0
+// L_A² of clip.h over A's squared edges from its first vertex, S. Rounding does about 5.3 ε |e||f| L at most
+// to det_A · λ of the face with edges e and f. The fourth λ is one less the three others: Σ|e||f| ≤ S, so 5.3
+// ε S L of these and 1.5 ε S L of the differences, 27 in units of OVERLAP_CLIP_NOISE. In a search among small
+// elements on large cells some V were wrong with ½.
+#define OVERLAP_CLIP_OWN 32.0
 
 // How far λ of a flat tetrahedron may slide along its faces, as clip.h has it: times noise, over det. Six
 // times the largest found in a search for bad pairs.
