@@ -151,6 +151,7 @@ START_TEST(a_block_that_sticks_and_slips_in_motion_agrees_with_differences_of_re
   const Asked asked = {.scene = "gradient_slide",
                        .setting = "time.end=0.03",
                        .tolerance = 3e-6,
+                       .step = 1e-5,
                        .least_switches = 10,
                        .of = {"displacement:upper:x", "position:upper:3:z", "force:upper:lower:x",
                               "moment:upper:lower:y", "reaction:lower:driven[0]:x"},

@@ -91,7 +91,7 @@ END_TEST
 
 START_TEST(weights_that_are_not_there) {
   write_scene(BOX, "    self_contact: true\ncontact: {overlap: none.safetensors}\n");
-  expect(STATUS_IO, ":7:10: contact.overlap", "none.safetensors", "cannot be opened");
+  expect(STATUS_IO, ":7:20: contact.overlap", "none.safetensors", "cannot be opened");
 }
 END_TEST
 
