@@ -16,7 +16,7 @@ typedef struct ContactBody {
   int quadratic_begin, quadratic_end; // equal: its tetrahedra are linear
   bool is_obstacle;                   // carries no unknowns: static or driven
   bool meets_itself;                  // parts of it may touch each other (contact/search/self.h)
-  int smooth; // of linear tetrahedra: the level of contact/surface/smooth/smooth.h; 0: facets as they are
+  int smooth; // the level of contact/surface/smooth/smooth.h; 0: facets as they are
 } ContactBody;
 
 // Obstacles without elements.
