@@ -18,10 +18,10 @@
 //   been deep inside can come to the other side by passing through.
 //
 // Turned. h is opposed where its component along the kept direction is below −½. An element is turned once h
-// is opposed while the element is deep inside, or was before h became opposed and the middle of B is no
-// farther than the margin of contact's lists, by which it moves at most while they hold. It has gone beyond
-// the middle of B then, and is pushed out on the other side. It is no longer turned once that component is
-// above ½. An element that leaves B while it is turned has passed through.
+// is opposed while the element is deep inside. It is turned, too, if it was deep before h became opposed and
+// the middle of B is within its reach: the margin of contact's lists, by which it moves at most while they
+// hold. It has gone beyond the middle of B then, and is pushed out on the other side. It is no longer turned
+// once that component is above ½. An element that leaves B while it is turned has passed through.
 //
 // Parts of B. Where B has several layers, or a slot, the element meets parts of B
 // (contact/passage/meetings.h) that press it from opposite sides, and their shares change. So h is that of

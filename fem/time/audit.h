@@ -16,7 +16,7 @@
 // however short the steps are. What an integrator errs by falls faster than the step, and what a jump gives
 // does not fall. So the step that stands is compared with the longest that was refused from the same state,
 // if it has FEM_CUT² of its length or less. Where it gains with half to twice the power of that one, this is
-// the forces' own power, and steps that gain with up to twice as much are not refused. The own power is at
+// the forces' own power. Steps that gain with up to twice as much are not refused then. The own power is at
 // most twice that of any step since, and none after a step that gains nothing.
 #ifndef TETLAP_FEM_TIME_AUDIT_H
 #define TETLAP_FEM_TIME_AUDIT_H

@@ -52,8 +52,8 @@
 //        + ½ Σ_{g of B} φ_g (ν_B + ν_A L_B² L_A/(256 |det_A|)).
 //
 // The first are planes that move along their normals. The rest: λ of a flat tetrahedron tell a point's place
-// along its faces to ν_B/det_B of L_B only, and by so much the other's planes, of L_A², seem to have moved,
-// if they stand across. `clip`, which sums each face on its own, takes L for L_A and L_B and adds ν/8 λ_f(o)
+// along its faces to ν_B/det_B of L_B only. By so much the other's planes, of L_A², seem to have moved if
+// they stand across. `clip`, which sums each face on its own, takes L for L_A and L_B and adds ν/8 λ_f(o)
 // for each face that P has (lanes.h). With |δV| so, the moment V x̄ is off by at most L |δV|: |δx̄| ≤ 1e-9 L
 // where V is more than 1e-6 of the smaller tetrahedron, and x̄ is within the boxes of both in any case.
 // Rounding of well-shaped pairs leaves |δx̄| ≤ 1e-12 L where V is more than 1e-4 of the smaller
