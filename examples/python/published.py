@@ -16,7 +16,7 @@ Materials, meshes, places and starts are theirs. Their implicit Euler steps of .
 own, and the run chooses its steps. L-BFGS (descent.py) follows exact derivatives through all contacts.
 """
 
-import sys
+import argparse
 import tempfile
 from pathlib import Path
 
@@ -99,6 +99,7 @@ def main(data, problem, most=20):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3 or sys.argv[2] not in PROBLEMS:
-        sys.exit(__doc__)
-    main(*sys.argv[1:])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("data", metavar="DATA", help="the folder json_scripts of DiffIPC-data")
+    parser.add_argument("problem", choices=PROBLEMS)
+    main(**vars(parser.parse_args()))

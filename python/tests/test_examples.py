@@ -2,6 +2,7 @@
 """The examples reach what they promise."""
 
 import os
+import subprocess
 import sys
 import tempfile
 import types
@@ -91,6 +92,14 @@ class Examples(unittest.TestCase):
             self.assertLess(losses[-1], 0.01 * losses[0])
             points, losses = published.main(folder, "bunnies", most=2)
             self.assertLess(losses[-1], 0.5 * losses[0])
+
+    def test_published_problems_that_are_not_named_are_asked_for(self):
+        file = Path(os.environ["TETLAP_SOURCE_DIR"], "examples", "python", "published.py")
+        for words, told in (((), "required: DATA, problem"), (("folder", "ball"), "invalid choice: 'ball'")):
+            ended = subprocess.run([sys.executable, file, *words], capture_output=True, text=True, check=False)
+            self.assertEqual(ended.returncode, 2)
+            self.assertIn("usage: published.py [-h] DATA {bunnies,slide}", ended.stderr)
+            self.assertIn(told, ended.stderr)
 
     def test_a_descent_refuses_a_start_without_a_value_and_ends_where_there_is_no_slope(self):
         import descent
