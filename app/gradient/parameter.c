@@ -89,8 +89,7 @@ static const Key scene_keys[] = {
 static const char keys_with_derivatives[] =
     "bodies.NAME.material.{young, poisson, density, mooney, ogden.exponents[K], ogden.shares[K], "
     "fibre.modulus, fibre.direction[K], plasticity.{yield, hardening}, damping, viscosity, bulk_viscosity}, "
-    "bodies.NAME.materials[N].{…} "
-    "the same; "
+    "bodies.NAME.materials[N].{…} the same; "
     "bodies.NAME.loads[N].{force[K], body_force[K], traction[K], pressure}; "
     "bodies.NAME.driven[N].{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}; "
     "bodies.NAME.{place.translate[K], velocity[K], spin[K]}; "

@@ -278,9 +278,7 @@ bool fem_gradient_has_following(const FemModel *model) {
 }
 
 bool fem_gradient_yields(const FemModel *model) {
-  for (int p = 0; p < model->part_count; p++)
-    if (model->parts[p].material.yield_stress > 0) return true;
-  return false;
+  return fem_effect_plasticity.is_wanted(model->scene);
 }
 
 bool fem_gradient_is_path(const FemModel *model) {

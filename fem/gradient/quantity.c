@@ -358,12 +358,12 @@ static Status evaluate_effect(const FemTangent *tangent, const FemEffectOps *ops
 static Status evaluate_energies(const FemQuantity *quantity, const FemTangent *tangent, FemEnergy *energy,
                                 double *force) {
   if (quantity->energies & FEM_QUANTITY_ELASTIC) {
+    void *plasticity = fem_system_effect(tangent->system, &fem_effect_plasticity);
     TRY(evaluate_effect(tangent, &fem_effect_elasticity, energy, force));
     TRY(evaluate_effect(tangent, &fem_effect_volume, energy, force));
+    // Its derivative by positions is no force (fem_yielding_pull_energy).
+    if (plasticity) TRY(fem_effect_plasticity.add_energy(plasticity, tangent->state, energy));
   }
-  void *plasticity = fem_system_effect(tangent->system, &fem_effect_plasticity); // is no force's
-  if (quantity->energies & FEM_QUANTITY_ELASTIC && plasticity)
-    TRY(fem_effect_plasticity.add_energy(plasticity, tangent->state, energy));
   if (quantity->energies & FEM_QUANTITY_GRAVITY)
     TRY(evaluate_effect(tangent, &fem_effect_gravity, energy, force));
   if (quantity->energies & FEM_QUANTITY_CONTACT)

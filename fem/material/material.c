@@ -50,8 +50,7 @@ const char *fem_material_limit(FemMaterialLaw law) {
            "(time.max_step)";
   default:
     return "the pressure that its law bears has an end as the volume vanishes; take law: neo_hookean_log, or "
-           "a "
-           "smaller load or impact";
+           "a smaller load or impact";
   }
 }
 

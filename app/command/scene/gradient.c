@@ -39,8 +39,7 @@ static const AppOption option_table[] = {
      CLI_POSITIVE, CLI_TO(Options, words.at)},
     {"memory", 0, "MB",
      "What the replay of a motion, or of a scene with friction or plasticity, may keep; where it were more, "
-     "segments are "
-     "done twice (default: what there is)",
+     "segments are done twice (default: what there is)",
      1, CLI_POSITIVE, CLI_TO(Options, words.most_megabytes)},
     {"weights", 'w', "FILE",
      "Write dg/dw by the weights of contact.overlap's network, a geo or a hybrid's, as a weights file of the "

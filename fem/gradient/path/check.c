@@ -59,22 +59,22 @@ static Status check_friction(const FemModel *model, const FemGradientDef *def) {
                        "contact.friction.static: friction that is larger at rest has no gradient: "
                        "a run may break away sooner or later");
   TRY(check_pairs(model));
-  if (model->start)
-    return status_fail(STATUS_INPUT, "start: with friction a run that goes on from another has no gradient");
   for (int p = 0; p < def->parameter_count; p++)
     if (def->parameters[p].kind == FEM_PARAMETER_SPIN && def->parameters[p].obstacle >= 0)
       return status_fail(STATUS_INPUT, "with friction there is no derivative by the spin of an obstacle");
   return STATUS_OK;
 }
 
-static Status check_yielding(const FemModel *model) {
-  if (!fem_gradient_yields(model) || !model->start) return STATUS_OK;
-  return status_fail(STATUS_INPUT, "start: with plasticity a run that goes on from another has no gradient");
+static Status check_start(const FemModel *model) {
+  bool yields = fem_gradient_yields(model);
+  if (!model->start || !(yields || fem_gradient_has_friction(model))) return STATUS_OK;
+  return status_fail(STATUS_INPUT, "%s a run that goes on from another has no gradient",
+                     yields ? "start: with plasticity" : "start: with friction");
 }
 
 Status fem_path_check(const FemModel *model, const FemGradientDef *def) {
   if (!model->scene->is_static) TRY(check_motion(model, def));
-  TRY(check_yielding(model));
+  TRY(check_start(model));
   return check_friction(model, def);
 }
 

@@ -35,13 +35,22 @@ FemReplayFormula fem_replay_formula(const FemReplay *replay, int k) {
                             ratio * ratio / (1 + ratio) / h};
 }
 
+// The step of the first row that is in memory with a segment.
+static int first_of(const FemReplay *replay, int segment) {
+  return segment > 0 ? segment * replay->plan.length + 1 - FEM_REPLAY_LEAD : 0;
+}
+
+static size_t place_of(const FemReplay *replay, int k) {
+  return (size_t)replay->n * (size_t)(k - first_of(replay, replay->segment));
+}
+
 // u and v of step k, which is in memory.
 static double *u_of(const FemReplay *replay, int k) {
-  return replay->u + (size_t)replay->n * (size_t)(k - replay->first);
+  return replay->u + place_of(replay, k);
 }
 
 static double *v_of(const FemReplay *replay, int k) {
-  return replay->v + (size_t)replay->n * (size_t)(k - replay->first);
+  return replay->v + place_of(replay, k);
 }
 
 const double *fem_replay_v(const FemReplay *replay, int k) {
@@ -111,7 +120,8 @@ static size_t history_count(const FemReplay *replay) {
   return rows * (size_t)replay->system.effect_count;
 }
 
-// A solver keeps its order of elimination, so that one which goes on adds up otherwise than one which begins.
+// A new one: a solver keeps its order of elimination, so one which goes on adds up otherwise than one which
+// begins.
 static Status create_solver(FemReplay *replay) {
   fem_equilibrium_destroy(&replay->equilibrium);
   TRY(fem_equilibrium_create(&replay->equilibrium, &replay->system, &replay->state, &fem_solver_cholmod));
@@ -148,8 +158,7 @@ Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemRepl
   TRY(create_slips(replay));
   TRY(create_yields(replay));
   TRY(create_krylov(replay));
-  TRY(fem_mixing_create(&replay->mixing, replay->n));
-  return create_solver(replay);
+  return fem_mixing_create(&replay->mixing, replay->n);
 }
 
 void fem_replay_destroy(FemReplay *replay) {
@@ -407,10 +416,9 @@ static Status begin_anew(FemReplay *replay, int k) {
 
 // Keeps the last rows before a segment, or, `back`, puts them back.
 static void save(FemReplay *replay, int segment, bool back) {
-  int begin = segment * replay->plan.length, from = segment > 0 ? begin + 1 - FEM_REPLAY_LEAD : 0;
+  int begin = segment * replay->plan.length, from = first_of(replay, segment);
   size_t n = (size_t)replay->n, count = n * (size_t)(begin + 1 - from);
   double *saved = replay->saved + 2 * FEM_REPLAY_LEAD * n * (size_t)segment;
-  if (back) replay->first = from;
   for (int i = 0; i < 2; i++) {
     double *kept = saved + (size_t)i * FEM_REPLAY_LEAD * n;
     double *row = i == 0 ? u_of(replay, from) : v_of(replay, from);

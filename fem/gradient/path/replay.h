@@ -36,7 +36,7 @@ typedef struct FemReplay {
   bool is_near;    // the matrix is near J: no friction, damping, following pressure
   int n;           // unknowns
   FemReplayPlan plan;
-  int segment, first;          // the one in memory; the step of its first row
+  int segment;                 // the one in memory
   double *u, *v;               // of its steps, and of some before them      (rows, n)
   double *saved;               // u, v of the last steps before each segment (segments, 2, FEM_REPLAY_LEAD, n)
   double *force, *step;        // scratch                                   (n)

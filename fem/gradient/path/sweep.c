@@ -206,9 +206,8 @@ static Status correct(FemSweep *sweep, int g, double share, double *beta, double
 static Status solve(FemSweep *sweep, int g, double *beta, double *residual) {
   *residual = 0;
   memset(beta, 0, (size_t)sweep->replay.n * sizeof *beta);
-  double whole = find_left(sweep, g, beta), left;
+  double whole = find_left(sweep, g, beta), left = whole;
   if (whole == 0) return STATUS_OK; // after all terms
-  left = whole;
   for (int round = 0; round < MAX_ROUNDS && !(left <= RESIDUAL * whole); round++) {
     if (sweep->factorised == 0 || (sweep->is_spent && sweep->factorised != sweep->step))
       TRY(factorise(sweep));

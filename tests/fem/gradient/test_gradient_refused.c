@@ -103,15 +103,20 @@ START_TEST(an_equilibrium_alone_is_refused_where_it_does_not_tell) {
 }
 END_TEST
 
-START_TEST(what_yields_and_goes_on_from_another_run_is_refused) {
+static void refuse_start(const char *name, const char *why) {
   SceneRun scene;
   FemStart start = {0};
-  scene_open(&scene, "gradient_yield", NULL);
+  scene_open(&scene, name, NULL);
   scene.model.start = &start;
   ck_assert_int_eq(fem_path_check(&scene.model, &(FemGradientDef){0}), STATUS_INPUT);
-  ck_assert_msg(strstr(status_message(), "start: with plasticity") != NULL, "%s", status_message());
+  ck_assert_msg(strstr(status_message(), why) != NULL, "%s", status_message());
   scene.model.start = NULL;
   scene_close(&scene);
+}
+
+START_TEST(what_remembers_and_goes_on_from_another_run_is_refused) {
+  refuse_start("gradient_yield", "start: with plasticity");
+  refuse_start("gradient_rub", "start: with friction");
 }
 END_TEST
 
@@ -212,7 +217,7 @@ int main(void) {
   tcase_add_test(test_case, what_does_not_act_has_the_derivative_0_and_a_reason);
   tcase_add_test(test_case, what_has_no_gradient_is_refused_by_name);
   tcase_add_test(test_case, an_equilibrium_alone_is_refused_where_it_does_not_tell);
-  tcase_add_test(test_case, what_yields_and_goes_on_from_another_run_is_refused);
+  tcase_add_test(test_case, what_remembers_and_goes_on_from_another_run_is_refused);
   tcase_add_test(test_case, parameters_without_a_derivative_are_refused_by_name);
   tcase_add_test(test_case, quantities_that_are_not_there_are_refused_by_name);
   tcase_add_test(test_case, what_is_left_unsolved_is_no_gradient);
