@@ -36,6 +36,10 @@ static const Key body_keys[] = {
     {"material.viscosity", FEM_PARAMETER_VISCOSITY, -1, -1, -1},
     {"material.bulk_viscosity", FEM_PARAMETER_BULK_VISCOSITY, -1, -1, -1},
     {"place.translate[#]", FEM_PARAMETER_PLACE, -1, -1, 0},
+    {"place.scale", FEM_PARAMETER_SCALE, -1, -1, -1},
+    {"place.scale[#]", FEM_PARAMETER_SCALE, -1, -1, 0},
+    {"place.rotate.degrees", FEM_PARAMETER_ROTATE, -1, -1, -1},
+    {"rest[#][#]", FEM_PARAMETER_REST, -1, 0, 1},
     {"loads[#].force[#]", FEM_PARAMETER_LOAD, 0, -1, 1},
     {"loads[#].body_force[#]", FEM_PARAMETER_LOAD, 0, -1, 1},
     {"loads[#].traction[#]", FEM_PARAMETER_LOAD, 0, -1, 1},
@@ -92,7 +96,8 @@ static const char keys_with_derivatives[] =
     "bodies.NAME.materials[N].{…} the same; "
     "bodies.NAME.loads[N].{force[K], body_force[K], traction[K], pressure}; "
     "bodies.NAME.driven[N].{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}; "
-    "bodies.NAME.{place.translate[K], velocity[K], spin[K]}; "
+    "bodies.NAME.{place.{translate[K], scale, scale[K], rotate.degrees}, rest[VERTEX][K], velocity[K], "
+    "spin[K]}; "
     "obstacles.NAME.{halfspace.point[K], sphere.centre[K], box.centre[K], cylinder.centre[K], "
     "place.translate[K]}; "
     "obstacles.NAME.motion.{velocity[K], amplitude[K], frequency, spin, table[ROW][1 to 3]}; "
@@ -124,6 +129,7 @@ static bool find_key(const char *text, const Key *keys, size_t count, FemParamet
     if (keys[k].item >= 0) parameter->item = numbers[keys[k].item];
     if (keys[k].row >= 0) parameter->row = numbers[keys[k].row];
     if (keys[k].component >= 0) parameter->component = numbers[keys[k].component];
+    if (parameter->kind == FEM_PARAMETER_SCALE && keys[k].component < 0) parameter->component = -1;
     return true;
   }
   return false;

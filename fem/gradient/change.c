@@ -17,17 +17,18 @@ static size_t values_of(const FemTangent *tangent) {
 
 Status fem_change_create(FemChange *change, const FemTangent *tangent) {
   size_t values = values_of(tangent);
-  *change = (FemChange){.party = -1, .placed = -1, .wants_elastic = true};
+  *change = (FemChange){.party = -1, .wants_elastic = true};
   change->force = memory_zeroed(values, sizeof(double));
   change->motion = memory_zeroed(values, sizeof(double));
   change->speed = memory_zeroed(values, sizeof(double));
+  change->rests = memory_zeroed(values, sizeof(double));
   change->product = memory_zeroed(values, sizeof(double));
   change->contact = memory_zeroed(values, sizeof(double));
   change->rates = memory_zeroed((size_t)tangent->interface_count, sizeof(double));
   change->slips = memory_zeroed((size_t)tangent->interface_count, sizeof(double));
   change->masses = memory_zeroed(values / 3, sizeof(double));
-  bool fits = change->force && change->motion && change->speed && change->product && change->contact &&
-              change->rates && change->slips && change->masses;
+  bool fits = change->force && change->motion && change->speed && change->rests && change->product &&
+              change->contact && change->rates && change->slips && change->masses;
   return fits ? STATUS_OK : status_no_memory("what a parameter changes");
 }
 
@@ -35,6 +36,8 @@ void fem_change_destroy(FemChange *change) {
   memory_free(change->force);
   memory_free(change->motion);
   memory_free(change->speed);
+  memory_free(change->rests);
+  fem_shape_destroy(&change->shape);
   memory_free(change->rates);
   memory_free(change->slips);
   memory_free(change->masses);
@@ -50,10 +53,12 @@ static void clear(FemChange *change, const FemTangent *tangent) {
   memset(change->speed, 0, bytes);
   memset(change->rates, 0, (size_t)tangent->interface_count * sizeof(double));
   memset(change->slips, 0, (size_t)tangent->interface_count * sizeof(double));
-  change->party = change->placed = -1;
+  memset(change->rests, 0, bytes);
+  fem_shape_destroy(&change->shape);
+  change->party = -1;
   change->elastic = change->gravity = 0;
   change->law = (FemVariedLaw){0};
-  for (int c = 0; c < 3; c++) change->shift[c] = change->spin[c] = change->rest[c] = 0;
+  for (int c = 0; c < 3; c++) change->shift[c] = change->spin[c] = 0;
 }
 
 // ---- Weight.
@@ -210,28 +215,33 @@ int fem_change_party(const FemModel *model, int obstacle) {
 }
 
 // A step of what rests, as a motion has turned it.
-static Vec3 turned_step(const FemConstraintDef *def, double time, int component) {
-  double from[3], to[3], velocity[3], step[3] = {0, 0, 0};
-  step[component] = 1;
+static Vec3 turned_step(const FemConstraintDef *def, double time, const double step[3]) {
+  double from[3], to[3], velocity[3];
   fem_drive_point(def, time, (const double[3]){0, 0, 0}, from, velocity);
   fem_drive_point(def, time, step, to, velocity);
   return vec3_sub(vec3_at(to), vec3_at(from));
 }
 
+// What is held or driven goes along with where it rests.
+static void carry(FemChange *change, const FemTangent *tangent) {
+  const FemModel *model = tangent->system->model;
+  for (int d = 0; d < model->driver_count; d++) {
+    const FemModelDriver *driver = &model->drivers[d];
+    for (int i = 0; i < driver->dof_count; i++) {
+      int dof = driver->dofs[i];
+      double step[3];
+      vec3_store(step, turned_step(driver->def, tangent->state->time, change->rests + (dof - dof % 3)));
+      change->motion[dof] = step[dof % 3];
+    }
+  }
+}
+
 static void place_body(FemChange *change, const FemTangent *tangent, const FemParameter *parameter) {
   const FemModel *model = tangent->system->model;
   const FemModelBody *body = &model->bodies[parameter->body];
-  change->placed = parameter->body;
-  change->rest[parameter->component] = 1;
-  for (int d = 0; d < model->driver_count; d++) {
-    const FemModelDriver *driver = &model->drivers[d];
-    double step[3];
-    vec3_store(step, turned_step(driver->def, tangent->state->time, parameter->component));
-    for (int i = 0; i < driver->dof_count; i++) {
-      int dof = driver->dofs[i];
-      if (dof / 3 >= body->vertex_begin && dof / 3 < body->vertex_end) change->motion[dof] = step[dof % 3];
-    }
-  }
+  for (int a = body->vertex_begin; a < body->vertex_end; a++)
+    change->rests[3 * (size_t)a + (size_t)parameter->component] = 1;
+  carry(change, tangent);
   double unseen = 1 - fem_gravity_share(model, tangent->state->time);
   for (int a = body->vertex_begin; a < body->vertex_end && model->scene->has_gravity; a++)
     change->gravity -= unseen * model->mass[a] * model->scene->gravity[parameter->component];
@@ -243,9 +253,22 @@ static void place(FemChange *change, const FemTangent *tangent, const FemParamet
     place_body(change, tangent, parameter);
     return;
   }
+  double step[3] = {0, 0, 0};
+  step[parameter->component] = 1;
   change->party = fem_change_party(model, parameter->obstacle);
-  vec3_store(change->shift, turned_step(&model->scene->obstacles[parameter->obstacle].motion,
-                                        tangent->state->time, parameter->component));
+  vec3_store(change->shift,
+             turned_step(&model->scene->obstacles[parameter->obstacle].motion, tangent->state->time, step));
+}
+
+static Status reshape(FemChange *change, const FemTangent *tangent, const FemParameter *parameter) {
+  fem_shape_rest(tangent->system->model, parameter, change->rests);
+  carry(change, tangent);
+  TRY(fem_shape_derive(&change->shape, tangent, change->rests));
+  size_t values = values_of(tangent);
+  for (size_t i = 0; i < values; i++) change->force[i] += change->shape.force[i];
+  change->elastic += change->shape.elastic;
+  change->gravity += change->shape.gravity;
+  return STATUS_OK;
 }
 
 // ---- Stiffness of contact.
@@ -333,6 +356,8 @@ Status fem_change_add_contact(FemChange *change, const FemTangent *tangent, int 
   size_t values = values_of(tangent);
   bool moves = fem_change_moves(change, tangent, interface);
   fem_varied_add_law(&change->law, interface, force);
+  if (change->shape.contact)
+    for (size_t i = 0; i < values; i++) force[i] += change->shape.contact[values * (size_t)interface + i];
   if (!moves && change->rates[interface] == 0) return STATUS_OK;
   memset(change->contact, 0, values * sizeof(double));
   TRY(fem_tangent_add_contact(tangent, interface, change->contact));
@@ -352,6 +377,7 @@ static Status find(FemChange *change, FemVaried *varied, const FemTangent *tange
   if (fem_parameter_is_of_motion(parameter)) return move(change, tangent, parameter);
   if (fem_parameter_is_of_law(parameter))
     return fem_varied_derive_law(varied, parameter, tangent->state, &change->law);
+  if (fem_parameter_is_of_shape(parameter)) return reshape(change, tangent, parameter);
   switch (parameter->kind) {
   case FEM_PARAMETER_DENSITY:
     fem_model_parts_spread(tangent->system->model, parameter->part, change->masses);

@@ -8,6 +8,7 @@
 #define TETLAP_FEM_GRADIENT_CHANGE_H
 
 #include "fem/gradient/parameter.h"
+#include "fem/gradient/shape.h"
 #include "fem/gradient/tangent.h"
 #include "fem/gradient/varied.h"
 
@@ -21,8 +22,8 @@ typedef struct FemChange {
   double *masses;            // ∂m/∂p of a density; of other parameters not set       (vertex_count)
   int party;                 // the obstacle that moves; −1: none
   double shift[3], spin[3];  // by v(x) = shift + spin × x
-  int placed;                // the body whose place is the parameter; −1: none
-  double rest[3];            // ∂X/∂p of its rest positions
+  double *rests;             // ∂X/∂p of rest positions                               (vertex_count, 3)
+  FemShape shape;            // what follows from that where it is no shift of a body; zeroed: nothing
   bool wants_elastic;        // set by the caller: whether `elastic` is found; true at first
   double elastic, gravity;   // ∂/∂p of these energies
   double *product, *contact; // scratch                                    (vertex_count, 3)

@@ -313,12 +313,41 @@ static Status check_scene(const FemModel *model) {
   return STATUS_OK;
 }
 
+static bool has_pressure(const FemGradientDef *def) {
+  for (int g = 0; g < def->goal_count; g++)
+    for (int t = 0; t < def->goals[g].term_count; t++)
+      if (def->goals[g].terms[t].quantity.kind == FEM_QUANTITY_PRESSURE) return true;
+  return false;
+}
+
+// Of parameters that change a body's shape.
+static Status check_shapes(const FemModel *model, const FemGradientDef *def) {
+  const FemSceneDef *scene = model->scene;
+  bool is_asked = false, meets_itself = false;
+  for (int p = 0; p < def->parameter_count; p++)
+    is_asked = is_asked || fem_parameter_is_of_shape(&def->parameters[p]);
+  for (int b = 0; b < scene->body_count; b++) meets_itself = meets_itself || scene->bodies[b].self_contact;
+  if (!is_asked) return STATUS_OK;
+  if (fem_gradient_is_path(model))
+    return status_fail(STATUS_INPUT,
+                       "scale, rotation and rest positions of a body are parameters of static scenes without "
+                       "friction, plasticity and pressures that follow their surface (`follows: nothing`)");
+  if (meets_itself || model->start)
+    return status_fail(STATUS_INPUT, "by a body's shape there is no derivative %s",
+                       meets_itself ? "with self_contact" : "of a run that goes on from another");
+  if (has_pressure(def))
+    return status_fail(STATUS_INPUT,
+                       "pressures have no derivative by a body's shape: take the force patch:PROBE:AXIS");
+  return STATUS_OK;
+}
+
 Status fem_gradient_check(const FemModel *model, const FemGradientDef *def) {
   TRY(check_scene(model));
   for (int g = 0; g < def->goal_count; g++)
     for (int t = 0; t < def->goals[g].term_count; t++)
       TRY(fem_quantity_check(model, &def->goals[g].terms[t].quantity));
   for (int p = 0; p < def->parameter_count; p++) TRY(fem_parameter_check(model, &def->parameters[p]));
+  TRY(check_shapes(model, def));
   size_t count;
   return def->by_weights ? fem_answers_count_weights(model, &count) : STATUS_OK;
 }

@@ -6,7 +6,7 @@
 
 #include "fem/model/compliance/compliance.h"
 
-typedef enum Owner { OF_SCENE, OF_MATERIAL, OF_MOTION, OF_LAW } Owner;
+typedef enum Owner { OF_SCENE, OF_MATERIAL, OF_MOTION, OF_LAW, OF_SHAPE } Owner;
 
 // Of a load the unit is told by its kind.
 static const struct {
@@ -34,6 +34,9 @@ static const struct {
     [FEM_PARAMETER_SPIN] = {OF_MOTION, "rad/s"},
     [FEM_PARAMETER_TABLE] = {OF_MOTION, "m"},
     [FEM_PARAMETER_PLACE] = {OF_SCENE, "m"},
+    [FEM_PARAMETER_SCALE] = {OF_SHAPE, ""},
+    [FEM_PARAMETER_ROTATE] = {OF_SHAPE, "°"},
+    [FEM_PARAMETER_REST] = {OF_SHAPE, "m"},
     [FEM_PARAMETER_CONTACT_STIFFNESS] = {OF_SCENE, "Pa/m"},
     [FEM_PARAMETER_PAIR_STIFFNESS] = {OF_SCENE, "Pa/m"},
     [FEM_PARAMETER_LAW_PRESSURE] = {OF_LAW, "Pa"},
@@ -61,6 +64,10 @@ bool fem_parameter_is_of_yielding(const FemParameter *parameter) {
 
 bool fem_parameter_is_of_law(const FemParameter *parameter) {
   return kinds[parameter->kind].owner == OF_LAW;
+}
+
+bool fem_parameter_is_of_shape(const FemParameter *parameter) {
+  return kinds[parameter->kind].owner == OF_SHAPE;
 }
 
 static const FemContactDef *contact_of(const FemModel *model) {
@@ -201,6 +208,23 @@ static Status check_motion(const FemModel *model, const FemParameter *parameter)
   return STATUS_OK;
 }
 
+static Status check_shape(const FemModel *model, const FemParameter *parameter) {
+  const FemModelBody *body = &model->bodies[parameter->body];
+  const FemPlacement *placement = &model->scene->bodies[parameter->body].placement;
+  const double *s = placement->scale, *axis = placement->axis;
+  int count = body->vertex_end - body->vertex_begin;
+  if (parameter->kind == FEM_PARAMETER_REST && parameter->row >= count)
+    return status_fail(STATUS_INPUT, "body '%s' has %d vertices, no rest[%d]", body->name, count,
+                       parameter->row);
+  if (parameter->kind == FEM_PARAMETER_SCALE && parameter->component < 0 && !(s[0] == s[1] && s[1] == s[2]))
+    return status_fail(STATUS_INPUT, "body '%s' has a factor for each axis: write place.scale[0]",
+                       body->name);
+  if (parameter->kind == FEM_PARAMETER_ROTATE && axis[0] == 0 && axis[1] == 0 && axis[2] == 0)
+    return status_fail(STATUS_INPUT, "body '%s' is not turned: give it place.rotate with an axis and degrees",
+                       body->name);
+  return STATUS_OK;
+}
+
 // There is no derivative by ν where elements begin to keep a part of λ only.
 static bool is_at_largest_ratio(const FemModelBody *body, const FemMaterial *material) {
   static const double NEAR = 1e-9;
@@ -243,6 +267,7 @@ Status fem_parameter_check(const FemModel *model, const FemParameter *parameter)
   if (fem_parameter_is_of_material(parameter)) return check_material(model, parameter);
   if (fem_parameter_is_of_motion(parameter)) return check_motion(model, parameter);
   if (fem_parameter_is_of_law(parameter)) return check_law(model, parameter);
+  if (fem_parameter_is_of_shape(parameter)) return check_shape(model, parameter);
   switch (parameter->kind) {
   case FEM_PARAMETER_LOAD:
     return check_load(model, parameter);
@@ -427,9 +452,18 @@ static double value_of_law(const FemModel *model, const FemParameter *parameter)
   }
 }
 
+static double value_of_shape(const FemModel *model, const FemParameter *parameter) {
+  const FemPlacement *placement = &model->scene->bodies[parameter->body].placement;
+  size_t vertex = (size_t)(model->bodies[parameter->body].vertex_begin + parameter->row);
+  if (parameter->kind == FEM_PARAMETER_REST) return model->rest[3 * vertex + (size_t)parameter->component];
+  if (parameter->kind == FEM_PARAMETER_ROTATE) return placement->angle_degrees;
+  return placement->scale[parameter->component < 0 ? 0 : parameter->component];
+}
+
 double fem_parameter_value(const FemModel *model, const FemParameter *parameter) {
   if (fem_parameter_is_of_motion(parameter)) return value_of_motion(model, parameter);
   if (fem_parameter_is_of_law(parameter)) return value_of_law(model, parameter);
+  if (fem_parameter_is_of_shape(parameter)) return value_of_shape(model, parameter);
   switch (parameter->kind) {
   case FEM_PARAMETER_GRAVITY:
     return model->scene->has_gravity ? model->scene->gravity[parameter->component] : 0;

@@ -27,6 +27,9 @@ typedef enum FemParameterKind {
   FEM_PARAMETER_SPIN,              // [rad/s]
   FEM_PARAMETER_TABLE,             // a displacement of its table, `component` of `row` [m]
   FEM_PARAMETER_PLACE,             // a coordinate of where a body or an obstacle stands [m]
+  FEM_PARAMETER_SCALE,             // of a body's mesh: a factor, or (component −1) all three
+  FEM_PARAMETER_ROTATE,            // the angle that it is turned by [°]
+  FEM_PARAMETER_REST,              // a coordinate of a body's vertex (`row`) at rest [m]
   FEM_PARAMETER_CONTACT_STIFFNESS, // κ as the scene gives it for all pairs
   FEM_PARAMETER_PAIR_STIFFNESS,    // κ of contact.pairs[item]
   FEM_PARAMETER_LAW_PRESSURE,      // of contact.law, or of that of contact.pairs[item]: P [Pa]
@@ -52,6 +55,7 @@ typedef struct FemParameter {
 bool fem_parameter_is_of_material(const FemParameter *parameter); // acts by forces within its part
 bool fem_parameter_is_of_yielding(const FemParameter *parameter); // of its part's plasticity
 bool fem_parameter_is_of_motion(const FemParameter *parameter);   // of a prescribed motion
+bool fem_parameter_is_of_shape(const FemParameter *parameter);    // moves a body's rest positions
 bool fem_parameter_is_of_law(const FemParameter *parameter);      // of a pressure law of contact
 
 // STATUS_INPUT: the scene does not give it, or no derivative is known; the message says why.

@@ -124,12 +124,15 @@ static void evaluate_place(const FemQuantity *quantity, const FemTangent *tangen
   }
 }
 
-// A body that stands elsewhere is displaced less, if it stays.
+// What rests elsewhere is displaced less, if it stays.
 static double change_place(const FemQuantity *quantity, const FemTangent *tangent, const FemChange *change) {
-  const FemModel *model = tangent->system->model;
-  if (change->placed < 0 || quantity->kind == FEM_QUANTITY_POSITION) return 0;
-  int body = quantity->kind == FEM_QUANTITY_PROBE ? model->probes[quantity->body].body : quantity->body;
-  return body == change->placed ? -change->rest[quantity->component] : 0;
+  const Selection selection = select_vertices(quantity, tangent->system->model);
+  double sum = 0;
+  for (int k = 0; k < selection.count && selection.is_displaced; k++) {
+    int vertex = selection.vertices ? selection.vertices[k] : selection.begin + k;
+    sum += change->rests[3 * (size_t)vertex + (size_t)quantity->component];
+  }
+  return -sum / selection.count;
 }
 
 // ---- Forces of contact: g = Σ w · f over the vertices of one side.
@@ -393,6 +396,7 @@ static Status change_contact_energy(const FemTangent *tangent, FemChange *change
     double energy;
     TRY(fem_tangent_contact_energy(tangent, i, &energy));
     *derivative += change->rates[i] * energy;
+    if (change->shape.energies) *derivative += change->shape.energies[i];
     if (!fem_change_moves(change, tangent, i)) continue;
     memset(change->contact, 0, values_of(tangent) * sizeof(double));
     TRY(fem_tangent_add_contact(tangent, i, change->contact));

@@ -49,7 +49,8 @@ static void destroy_builder(Builder *builder) {
 
 static Status select_all(Builder *builder) {
   const FemMesh *mesh = builder->mesh;
-  TRY(fem_select_vertices(&builder->def->select, mesh, &builder->selected, &builder->selected_count));
+  if (!builder->selected)
+    TRY(fem_select_vertices(&builder->def->select, mesh, &builder->selected, &builder->selected_count));
   builder->is_selected = memory_zeroed((size_t)mesh->vertex_count, sizeof *builder->is_selected);
   builder->force = memory_zeroed(3 * (size_t)mesh->vertex_count, sizeof *builder->force);
   if (!builder->is_selected || !builder->force) return status_no_memory("a load");
@@ -275,6 +276,18 @@ Status fem_load_create(FemLoad *load, const FemLoadDef *def, const FemMesh *mesh
   *load = (FemLoad){.def = def};
   Builder builder = {.def = def, .mesh = mesh};
   Status status = build(load, &builder, vertex_begin);
+  destroy_builder(&builder);
+  if (status) fem_load_destroy(load);
+  return status;
+}
+
+Status fem_load_create_like(FemLoad *load, const FemLoad *of, const FemMesh *mesh, int vertex_begin) {
+  *load = (FemLoad){.def = of->def};
+  Builder builder = {.def = of->def, .mesh = mesh, .selected_count = of->vertex_count};
+  builder.selected = memory_copy(of->vertices, (size_t)of->vertex_count, sizeof *of->vertices);
+  for (int i = 0; builder.selected && i < of->vertex_count; i++) builder.selected[i] -= vertex_begin;
+  Status status =
+      builder.selected ? build(load, &builder, vertex_begin) : status_no_memory("a load of another shape");
   destroy_builder(&builder);
   if (status) fem_load_destroy(load);
   return status;

@@ -29,6 +29,9 @@ typedef struct FemLoad {
 // STATUS_INPUT: a selection without a vertex, for a surface load without a triangle, for a torque on a line.
 Status fem_load_create(FemLoad *load, const FemLoadDef *def, const FemMesh *mesh, int vertex_begin);
 void fem_load_destroy(FemLoad *load); // also of a zeroed one
+// Like fem_load_create, but on the vertices of `of`, whatever the selection would find in this mesh: the same
+// load where the mesh has another shape. No torques and loads from outside.
+Status fem_load_create_like(FemLoad *load, const FemLoad *of, const FemMesh *mesh, int vertex_begin);
 
 // What the load's values are multiplied with at a time. STATUS_INPUT: not a number.
 Status fem_load_factor(const FemLoadDef *def, double time, double *factor);

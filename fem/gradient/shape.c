@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fem/gradient/shape.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "fem/effect/contact/contact.h"
+#include "fem/gradient/difference.h"
+#include "fem/mesh/mesh.h"
+
+// The largest strain of an edge between two points of a difference. What the sixth order omits is below
+// (3e-3)⁶, rounding 1e-16/1e-3. Contact: 1e-6², and 1e-16/1e-6; its kinks are sought that near to the shape.
+static const double STRAIN = 1e-3, STRAIN_OF_CONTACT = 1e-6;
+// A kink by which a force changes by less than this share of it, for a strain of 1, is not told from rounding
+// and curvature.
+static const double LEAST_KINK = 1e-4;
+
+// ---- Where vertices rest.
+
+static Vec3 rate_of(const FemPlacement *placement, const FemParameter *parameter, Vec3 X) {
+  Vec3 arm = vec3_sub(X, vec3_at(placement->translate)), axis = vec3_at(placement->axis);
+  double axes[3][3];
+  if (parameter->kind == FEM_PARAMETER_ROTATE)
+    return vec3_scale(M_PI / 180 / vec3_length(axis), vec3_cross(axis, arm));
+  if (parameter->component < 0) return vec3_scale(1 / placement->scale[0], arm);
+  fem_mesh_placement_axes(placement, axes);
+  Vec3 along = vec3_at(axes[parameter->component]);
+  return vec3_scale(vec3_dot(along, arm) / placement->scale[parameter->component], along);
+}
+
+void fem_shape_rest(const FemModel *model, const FemParameter *parameter, double *rests) {
+  const FemModelBody *body = &model->bodies[parameter->body];
+  const FemPlacement *placement = &model->scene->bodies[parameter->body].placement;
+  if (parameter->kind == FEM_PARAMETER_REST) {
+    rests[3 * (size_t)(body->vertex_begin + parameter->row) + (size_t)parameter->component] = 1;
+    return;
+  }
+  for (size_t a = (size_t)body->vertex_begin; a < (size_t)body->vertex_end; a++)
+    vec3_store(rests + 3 * a, rate_of(placement, parameter, vec3_at(model->rest + 3 * a)));
+}
+
+// The largest strain of an edge with p.
+static double strain_of(const FemModel *model, const double *rests) {
+  double most = 0;
+  for (int e = 0; e < model->tet_count; e++)
+    for (int v = 0; v < 4; v++)
+      for (int w = 0; w < v; w++) {
+        size_t a = 3 * (size_t)model->tets[e][v], b = 3 * (size_t)model->tets[e][w];
+        Vec3 edge = vec3_sub(vec3_at(model->rest + a), vec3_at(model->rest + b));
+        Vec3 way = vec3_sub(vec3_at(rests + a), vec3_at(rests + b));
+        most = fmax(most, vec3_length(way) / vec3_length(edge));
+      }
+  return most;
+}
+
+// ---- The model of another shape.
+
+static void measure(FemModel *model) {
+  memset(model->mass, 0, (size_t)model->vertex_count * sizeof *model->mass);
+  for (int e = 0; e < model->tet_count; e++) model->volumes[e] = fem_model_element(model, e).volume;
+  for (int e = 0; e < model->quadratic_count; e++) {
+    double nodes[3 * FEM_QUADRATIC_NODES];
+    const int *from = model->quadratic_nodes[e];
+    for (int k = 0; k < FEM_QUADRATIC_NODES; k++)
+      memcpy(nodes + 3 * k, model->rest + 3 * (size_t)from[k], 3 * sizeof *nodes);
+    fem_quadratic_create_curved(&model->quadratics[e], nodes);
+    double mass = model->parts[model->quadratic_part[e]].material.density * model->quadratics[e].volume;
+    for (int k = 0; k < FEM_QUADRATIC_NODES; k++) model->mass[from[k]] += fem_quadratic_mass_share(k) * mass;
+  }
+  for (int e = 0; e < model->tet_count; e++) {
+    int part = model->tet_part[e];
+    if (part < 0 || model->bodies[model->tet_body[e]].element == FEM_ELEMENT_QUADRATIC) continue;
+    double share = 0.25 * model->parts[part].material.density * model->volumes[e];
+    for (int k = 0; k < 4; k++) model->mass[model->tets[e][k]] += share;
+  }
+}
+
+// A body's tetrahedra by its own vertices; `tets` and `nodes` have room for all of the model.
+static FemMesh mesh_of(const FemModel *model, const FemModelBody *body, int (*tets)[4], int (*nodes)[10]) {
+  int count = body->tet_end - body->tet_begin, quadratics = body->quadratic_end - body->quadratic_begin;
+  for (int e = 0; e < count; e++)
+    for (int k = 0; k < 4; k++) tets[e][k] = model->tets[body->tet_begin + e][k] - body->vertex_begin;
+  for (int e = 0; e < quadratics; e++)
+    for (int k = 0; k < 10; k++)
+      nodes[e][k] = model->quadratic_nodes[body->quadratic_begin + e][k] - body->vertex_begin;
+  return (FemMesh){.vertex_count = body->vertex_end - body->vertex_begin,
+                   .tet_count = count,
+                   .rest = model->rest + 3 * (size_t)body->vertex_begin,
+                   .tets = tets,
+                   .quadratic = quadratics > 0 ? nodes : NULL,
+                   .quadratic_count = quadratics};
+}
+
+static const FemModelBody *body_of(const FemModel *model, const FemLoad *load) {
+  const FemModelBody *body = model->bodies;
+  while (load->vertices[0] >= body->vertex_end) body++;
+  return body;
+}
+
+static Status share_loads(FemModel *model, const FemModel *of) {
+  int(*tets)[4] = memory_zeroed((size_t)model->tet_count, sizeof *tets);
+  int(*nodes)[10] = memory_zeroed((size_t)model->quadratic_count, sizeof *nodes);
+  Status status = tets && nodes ? STATUS_OK : status_no_memory("loads of another shape");
+  for (model->load_count = 0; model->load_count < of->load_count && !status; model->load_count++) {
+    const FemLoad *load = &of->loads[model->load_count];
+    if (load->def->kind == FEM_LOAD_EXTERNAL) continue; // zeroed: what is set from outside does not change
+    const FemModelBody *body = body_of(model, load);
+    FemMesh mesh = mesh_of(model, body, tets, nodes);
+    status = fem_load_create_like(&model->loads[model->load_count], load, &mesh, body->vertex_begin);
+    if (status) break;
+  }
+  memory_free(nodes);
+  memory_free(tets);
+  return status;
+}
+
+static void destroy_model(FemModel *model) {
+  for (int l = 0; l < model->load_count && model->loads; l++) fem_load_destroy(&model->loads[l]);
+  memory_free(model->loads);
+  memory_free(model->rest);
+  memory_free(model->mass);
+  memory_free(model->volumes);
+  memory_free(model->quadratics);
+}
+
+// Borrows all that does not depend on shape.
+static Status create_model(FemModel *model, const FemModel *of, const double *rests, double step) {
+  size_t vertices = (size_t)of->vertex_count;
+  *model = *of;
+  model->load_count = 0;
+  model->rest = memory_copy(of->rest, 3 * vertices, sizeof *of->rest);
+  model->mass = memory_zeroed(vertices, sizeof *of->mass);
+  model->volumes = memory_zeroed((size_t)of->tet_count, sizeof *of->volumes);
+  model->quadratics = memory_copy(of->quadratics, (size_t)of->quadratic_count, sizeof *of->quadratics);
+  model->loads = memory_zeroed((size_t)of->load_count, sizeof *of->loads);
+  if (!model->rest || !model->mass || !model->volumes || !model->quadratics || !model->loads)
+    return status_no_memory("another shape");
+  for (size_t i = 0; i < 3 * vertices; i++) model->rest[i] += step * rests[i];
+  measure(model);
+  return share_loads(model, of);
+}
+
+// ---- What acts at fixed positions, as a sum of weighted shapes.
+
+static Status add_effect(const FemModel *model, const FemEffectOps *ops, const FemState *state, double *force,
+                         FemEnergy *energy) {
+  void *self = NULL;
+  if (!ops->is_wanted(model->scene)) return STATUS_OK;
+  TRY(ops->create(&self, model));
+  Status status = ops->add_force(self, state, force);
+  if (!status && energy) status = ops->add_energy(self, state, energy);
+  ops->destroy(self);
+  return status;
+}
+
+// Of elements, weight and loads.
+static Status add_bulk(FemShape *shape, const FemModel *model, const FemState *state, double weight,
+                       double *scratch) {
+  size_t count = 3 * (size_t)model->vertex_count;
+  FemEnergy energy = {0};
+  memset(scratch, 0, count * sizeof *scratch);
+  TRY(add_effect(model, &fem_effect_elasticity, state, scratch, &energy));
+  TRY(add_effect(model, &fem_effect_volume, state, scratch, &energy));
+  TRY(add_effect(model, &fem_effect_gravity, state, scratch, &energy));
+  TRY(add_effect(model, &fem_effect_loads, state, scratch, NULL));
+  for (size_t i = 0; i < count; i++) shape->force[i] += weight * scratch[i];
+  shape->elastic += weight * energy.elastic;
+  shape->gravity += weight * energy.gravity;
+  return STATUS_OK;
+}
+
+// Sums of contact's forces of all interfaces, with the stiffness that the tangent's have.
+static Status sum_contact(const FemTangent *tangent, void *effect, double *forces, double *energies) {
+  const FemState *state = tangent->state;
+  ContactSystem *system = fem_effect_contact_system(effect);
+  const ContactEvaluation *evaluation;
+  size_t values = 3 * (size_t)tangent->system->model->vertex_count;
+  TRY(contact_system_update(system, state->time, state->positions, state->velocities, 0));
+  TRY(contact_evaluate(system, 0, state->time, state->positions, &evaluation));
+  for (int i = 0; i < tangent->interface_count; i++) {
+    double *force = forces + values * (size_t)i;
+    const ContactInterfaceDef *own = fem_tangent_interface(tangent, i);
+    double kept = own->law ? 1 : own->stiffness / contact_system_layout(system)->interfaces[i].stiffness;
+    memset(force, 0, values * sizeof *force);
+    contact_system_add_force_of(system, evaluation, i, force);
+    for (size_t k = 0; k < values; k++) force[k] *= kept;
+    energies[i] = kept * contact_system_energy_of(evaluation, i);
+  }
+  return STATUS_OK;
+}
+
+static Status evaluate_contact(const FemTangent *tangent, const double *rests, double step, double *forces,
+                               double *energies) {
+  FemModel model;
+  void *effect = NULL;
+  Status status = create_model(&model, tangent->system->model, rests, step);
+  if (!status) status = fem_effect_contact.create(&effect, &model);
+  if (!status) status = sum_contact(tangent, effect, forces, energies);
+  if (effect) fem_effect_contact.destroy(effect);
+  destroy_model(&model);
+  return status;
+}
+
+// `sides`: forces behind, there, ahead (3, interface_count, values).
+static Status judge_kinks(const FemTangent *tangent, const double *sides, size_t values) {
+  size_t all = values * (size_t)tangent->interface_count;
+  for (int i = 0; i < tangent->interface_count; i++) {
+    double largest = 0, kink = 0;
+    for (size_t k = values * (size_t)i; k < values * (size_t)(i + 1); k++) {
+      largest = fmax(largest, fabs(sides[all + k]));
+      kink = fmax(kink, fabs(sides[k] - 2 * sides[all + k] + sides[2 * all + k]) / 2);
+    }
+    if (!(kink <= LEAST_KINK * STRAIN_OF_CONTACT * largest))
+      return status_fail(
+          STATUS_INPUT,
+          "contact of '%s' has no derivative by this shape: a vertex inside is equally far from two faces of "
+          "the surface. Take a mesh where it is not, or scale all axes together (place.scale)",
+          tangent->system->model->bodies[fem_tangent_interface(tangent, i)->a].name);
+  }
+  return STATUS_OK;
+}
+
+static Status derive_contact(FemShape *shape, const FemTangent *tangent, const double *rests, double strain) {
+  size_t values = 3 * (size_t)tangent->system->model->vertex_count, count = (size_t)tangent->interface_count;
+  double step = STRAIN_OF_CONTACT / strain;
+  shape->contact = memory_zeroed(values * count, sizeof *shape->contact);
+  shape->energies = memory_zeroed(count, sizeof *shape->energies);
+  double *sides = memory_zeroed(3 * values * count, sizeof *sides);
+  double *energies = memory_zeroed(3 * count, sizeof *energies);
+  bool fits = shape->contact && shape->energies && sides && energies;
+  Status status = fits ? STATUS_OK : status_no_memory("contact of another shape");
+  for (size_t k = 0; k < 3 && !status; k++)
+    status = evaluate_contact(tangent, rests, ((double)k - 1) * step, sides + k * values * count,
+                              energies + k * count);
+  if (!status) status = judge_kinks(tangent, sides, values);
+  for (size_t i = 0; i < values * count && !status; i++)
+    shape->contact[i] = (sides[2 * values * count + i] - sides[i]) / (2 * step);
+  for (size_t i = 0; i < count && !status; i++)
+    shape->energies[i] = (energies[2 * count + i] - energies[i]) / (2 * step);
+  memory_free(energies);
+  memory_free(sides);
+  return status;
+}
+
+static Status derive_bulk(FemShape *shape, const FemTangent *tangent, const double *rests, double strain) {
+  size_t values = 3 * (size_t)tangent->system->model->vertex_count;
+  double step = STRAIN / strain;
+  double *scratch = memory_zeroed(values, sizeof *scratch);
+  shape->force = memory_zeroed(values, sizeof *shape->force);
+  Status status = scratch && shape->force ? STATUS_OK : status_no_memory("forces of another shape");
+  for (int k = 0; k < FEM_DIFFERENCE_POINTS && !status; k++) {
+    FemModel model;
+    status = create_model(&model, tangent->system->model, rests, fem_difference[k].place * step);
+    if (!status) status = add_bulk(shape, &model, tangent->state, fem_difference[k].weight / step, scratch);
+    destroy_model(&model);
+  }
+  memory_free(scratch);
+  return status;
+}
+
+Status fem_shape_derive(FemShape *shape, const FemTangent *tangent, const double *rests) {
+  double strain = strain_of(tangent->system->model, rests);
+  TRY(derive_bulk(shape, tangent, rests, strain));
+  return tangent->contact ? derive_contact(shape, tangent, rests, strain) : STATUS_OK;
+}
+
+void fem_shape_destroy(FemShape *shape) {
+  memory_free(shape->force);
+  memory_free(shape->contact);
+  memory_free(shape->energies);
+  *shape = (FemShape){0};
+}
