@@ -42,7 +42,7 @@ typedef struct Piece {
 typedef struct Packing {
   unsigned char *slots;
   size_t slot_bytes;
-  double *filled; // what `fill` has given                   (BATCH_NUMBERS)
+  double *filled; // what `fill` has given                   (BATCH_NUMBERS at most)
   uint64_t *header;
   uint64_t block_count;
 } Packing;
@@ -50,8 +50,11 @@ typedef struct Packing {
 static bool create(Packing *packing, const Piece *piece) {
   packing->block_count = (piece->byte_count + BLOCK_BYTES - 1) / BLOCK_BYTES;
   packing->slot_bytes = deflate_bound(BLOCK_BYTES);
-  packing->slots = memory_zeroed(BATCH_BLOCKS, packing->slot_bytes);
-  packing->filled = memory_zeroed(piece->source ? 0 : BATCH_NUMBERS, sizeof *packing->filled);
+  // No more than the array has: fresh memory has to be cleared.
+  const size_t blocks = packing->block_count < BATCH_BLOCKS ? (size_t)packing->block_count : BATCH_BLOCKS;
+  const size_t filled = piece->source ? 0 : blocks * BLOCK_BYTES / sizeof(double);
+  packing->slots = memory_zeroed(blocks, packing->slot_bytes);
+  packing->filled = memory_zeroed(filled, sizeof *packing->filled);
   packing->header = memory_zeroed((size_t)packing->block_count + 3, sizeof *packing->header);
   return packing->slots && packing->filled && packing->header;
 }
