@@ -6,30 +6,33 @@
 // A sum has pieces of PIECE numbers, or MOST larger ones.
 enum { PIECE = 1024, MOST = 256 };
 
+// Short vectors enter no parallel region: one of one thread costs as much as a thousand numbers.
+#define EACH(i, n, statement)                                                                                \
+  if ((n) > FEM_VECTOR_LONG) {                                                                               \
+    _Pragma("omp parallel for simd schedule(static)") for (int i = 0; i < (n); i++) statement;               \
+  } else {                                                                                                   \
+    for (int i = 0; i < (n); i++) statement;                                                                 \
+  }
+
 void fem_vector_fill(int n, double a, double *y) {
-#pragma omp parallel for simd schedule(static) if (n > FEM_VECTOR_LONG)
-  for (int i = 0; i < n; i++) y[i] = a;
+  EACH(i, n, y[i] = a)
 }
 
 void fem_vector_copy(int n, const double *x, double *y) {
   if (x == y) return;
-#pragma omp parallel for simd schedule(static) if (n > FEM_VECTOR_LONG)
-  for (int i = 0; i < n; i++) y[i] = x[i];
+  EACH(i, n, y[i] = x[i])
 }
 
 void fem_vector_scale(int n, double a, const double *x, double *y) {
-#pragma omp parallel for simd schedule(static) if (n > FEM_VECTOR_LONG)
-  for (int i = 0; i < n; i++) y[i] = a * x[i];
+  EACH(i, n, y[i] = a * x[i])
 }
 
 void fem_vector_multiply(int n, const double *x, const double *y, double *z) {
-#pragma omp parallel for simd schedule(static) if (n > FEM_VECTOR_LONG)
-  for (int i = 0; i < n; i++) z[i] = x[i] * y[i];
+  EACH(i, n, z[i] = x[i] * y[i])
 }
 
 void fem_vector_sum(int n, double a, const double *x, double b, const double *y, double *z) {
-#pragma omp parallel for simd schedule(static) if (n > FEM_VECTOR_LONG)
-  for (int i = 0; i < n; i++) z[i] = a * x[i] + b * y[i];
+  EACH(i, n, z[i] = a * x[i] + b * y[i])
 }
 
 // A piece at a time, so that it stays in the cache while the vectors are added to it.
@@ -42,7 +45,12 @@ static void combine_piece(int begin, int end, int count, const double *a, const 
 }
 
 void fem_vector_combine(int n, int count, const double *a, const double *const *x, double *z) {
-#pragma omp parallel for schedule(static) if (n > FEM_VECTOR_LONG)
+  if (n <= FEM_VECTOR_LONG) {
+    for (int begin = 0; begin < n; begin += PIECE)
+      combine_piece(begin, begin + PIECE < n ? begin + PIECE : n, count, a, x, z);
+    return;
+  }
+#pragma omp parallel for schedule(static)
   for (int begin = 0; begin < n; begin += PIECE)
     combine_piece(begin, begin + PIECE < n ? begin + PIECE : n, count, a, x, z);
 }
@@ -94,7 +102,12 @@ typedef double PieceOf(int n, const double *x, const double *y);
 // Of each piece; how many there are.
 static int find_pieces(int n, PieceOf *piece_of, const double *x, const double *y, double partial[MOST]) {
   int size = n > MOST * PIECE ? (n - 1) / MOST + 1 : PIECE, count = (n + size - 1) / size;
-#pragma omp parallel for schedule(static) if (n > FEM_VECTOR_LONG)
+  if (n <= FEM_VECTOR_LONG) {
+    for (int p = 0; p < count; p++)
+      partial[p] = piece_of(p + 1 < count ? size : n - p * size, x + p * size, y + p * size);
+    return count;
+  }
+#pragma omp parallel for schedule(static)
   for (int p = 0; p < count; p++)
     partial[p] = piece_of(p + 1 < count ? size : n - p * size, x + p * size, y + p * size);
   return count;
@@ -125,7 +138,11 @@ double fem_vector_largest(int n, const double *x) {
 // x − x is 0 for a number, NaN otherwise.
 bool fem_vector_is_finite(int n, const double *x) {
   int bad = 0;
-#pragma omp parallel for simd schedule(static) reduction(| : bad) if (n > FEM_VECTOR_LONG)
+  if (n <= FEM_VECTOR_LONG) {
+    for (int i = 0; i < n; i++) bad |= !(x[i] - x[i] == 0);
+    return !bad;
+  }
+#pragma omp parallel for simd schedule(static) reduction(| : bad)
   for (int i = 0; i < n; i++) bad |= !(x[i] - x[i] == 0);
   return !bad;
 }

@@ -19,6 +19,9 @@ static const double LARGE = 1e7, LONG = 1e5;
 // A solution by fewer numbers is over before another thread is awake, and they stay near the processor: half
 // of the bytes take as long.
 static const size_t FEW_VALUES = 500000;
+// What fronts leave keeps its memory up to this count of numbers, 16 MB: to get, clear and give back so
+// little takes half as long as the elimination. All together it is about as large as the factor.
+static const size_t KEPT_VALUES = 2000000;
 
 // A factorisation while it goes on.
 typedef struct Make {
@@ -26,6 +29,12 @@ typedef struct Make {
   const double *values; // of the matrix
   atomic_int failure;   // a Status: the first that was seen
 } Make;
+
+// Tasks are done where they stand outside of parallel regions. In a region of one thread each waits in a
+// queue, with calls of the system.
+static bool is_alone(void) {
+  return omp_get_max_threads() == 1;
+}
 
 static Status no_memory(void) {
   return status_no_memory("the factor of the condensed system (try solver.linear: pcg)");
@@ -38,8 +47,11 @@ Status fem_front_factor_create(FemFrontFactor *factor, const FemFrontTree *tree,
   factor->updates = memory_zeroed((size_t)tree->front_count, sizeof *factor->updates);
   factor->x = memory_zeroed((size_t)tree->size, sizeof *factor->x);
   factor->carried = memory_zeroed(tree->carried_count, sizeof *factor->carried);
+  const bool with_kept = tree->left_count <= KEPT_VALUES;
+  if (with_kept) factor->kept = memory_zeroed(tree->left_count, sizeof *factor->kept);
   if (with_rough) factor->rough = memory_zeroed(tree->value_count, sizeof *factor->rough);
-  if (factor->values && factor->updates && factor->x && factor->carried && (factor->rough || !with_rough))
+  if (factor->values && factor->updates && factor->x && factor->carried && (factor->rough || !with_rough) &&
+      (factor->kept || !with_kept))
     return STATUS_OK;
   fem_front_factor_destroy(factor);
   return no_memory();
@@ -55,7 +67,7 @@ static void free_stacks(FemFrontFactor *factor) {
 void fem_front_factor_destroy(FemFrontFactor *factor) {
   free_stacks(factor);
   memory_free(factor->values), memory_free(factor->rough), memory_free(factor->updates);
-  memory_free(factor->x), memory_free(factor->carried);
+  memory_free(factor->x), memory_free(factor->carried), memory_free(factor->kept);
   *factor = (FemFrontFactor){0};
 }
 
@@ -215,9 +227,15 @@ static size_t update_size(const FemFront *front) {
 
 // What outlives a domain, or is above them.
 static double *create_update(Make *make, const FemFront *front) {
+  if (make->factor->kept) return make->factor->kept + front->left;
   double *update = memory_zeroed(update_size(front), sizeof *update);
   if (!update) fail(make, STATUS_MEMORY);
   return update;
+}
+
+static void free_update(FemFrontFactor *factor, int f) {
+  if (!factor->kept) memory_free(factor->updates[f]);
+  factor->updates[f] = NULL;
 }
 
 // All fronts of a domain, on this thread. Their updates stand on a stack, a front's children last.
@@ -255,10 +273,8 @@ static void make_top(Make *make, int f) {
 #pragma omp taskwait
   double *update = has_failed(make) ? NULL : create_update(make, &tree->fronts[f]);
   if (update) assemble(make, f, update);
-  for (int k = tree->child_begin[f]; k < tree->child_begin[f + 1]; k++) {
-    memory_free(factor->updates[tree->children[k]]);
-    factor->updates[tree->children[k]] = NULL;
-  }
+  for (int k = tree->child_begin[f]; k < tree->child_begin[f + 1]; k++)
+    free_update(factor, tree->children[k]);
   if (update) eliminate(make, &tree->fronts[f], update);
   factor->updates[f] = update;
 }
@@ -273,21 +289,28 @@ static void make_subtree(Make *make, int f) {
 
 static void make_root(Make *make, int f) {
   make_subtree(make, f);
-  memory_free(make->factor->updates[f]);
-  make->factor->updates[f] = NULL;
+  free_update(make->factor, f);
+}
+
+static void make_all(Make *make) {
+  const FemFrontTree *tree = make->factor->tree;
+  for (int f = 0; f < tree->front_count; f++)
+    if (tree->fronts[f].parent < 0) {
+#pragma omp task firstprivate(make, f)
+      make_root(make, f);
+    }
 }
 
 Status fem_front_factor_make(FemFrontFactor *factor, const double *values) {
-  const FemFrontTree *tree = factor->tree;
   Make make = {.factor = factor, .values = values};
   TRY(make_stacks(factor, omp_get_max_threads()));
+  if (is_alone()) {
+    make_all(&make);
+  } else {
 #pragma omp parallel
 #pragma omp single
-  for (int f = 0; f < tree->front_count; f++)
-    if (tree->fronts[f].parent < 0) {
-#pragma omp task firstprivate(f) shared(make)
-      make_root(&make, f);
-    }
+    make_all(&make);
+  }
   Status status = atomic_load(&make.failure);
   if (status == STATUS_RETRY)
     return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");
@@ -414,19 +437,27 @@ static void sweep_root(FemFrontFactor *factor, int root) {
   go_up_subtree(factor, root);
 }
 
+static void sweep_all(FemFrontFactor *factor) {
+  const FemFrontTree *tree = factor->tree;
+  for (int f = 0; f < tree->front_count; f++)
+    if (tree->fronts[f].parent < 0) {
+#pragma omp task firstprivate(factor, f)
+      sweep_root(factor, f);
+    }
+}
+
 static void solve(FemFrontFactor *factor, bool is_rough, const double *b, double *x) {
   const FemFrontTree *tree = factor->tree;
   factor->is_rough = is_rough;
-  const bool is_long_enough = tree->value_count > FEW_VALUES;
 #pragma omp parallel for schedule(static) if (tree->size > FEM_VECTOR_LONG)
   for (int i = 0; i < tree->size; i++) factor->x[i] = b[tree->unknown[i]];
-#pragma omp parallel if (is_long_enough)
+  if (is_alone() || tree->value_count <= FEW_VALUES) {
+    sweep_all(factor);
+  } else {
+#pragma omp parallel
 #pragma omp single
-  for (int f = 0; f < tree->front_count; f++)
-    if (tree->fronts[f].parent < 0) {
-#pragma omp task firstprivate(f)
-      sweep_root(factor, f);
-    }
+    sweep_all(factor);
+  }
 #pragma omp parallel for schedule(static) if (tree->size > FEM_VECTOR_LONG)
   for (int i = 0; i < tree->size; i++) x[tree->unknown[i]] = factor->x[i];
 }

@@ -13,6 +13,7 @@ typedef struct FemFrontFactor {
   float *rough;             // the same in single precision; NULL: none        (tree->value_count)
   bool is_rough;            // of the solution that goes on
   double **updates;         // what a front leaves to its parent, while both are made (front_count)
+  double *kept;             // room of all that outlives a domain; NULL: too much  (tree->left_count)
   double **stacks;          // of each thread: updates within a domain         (stack_count), (tree->stack)
   int stack_count;
   double *x;       // in the order of elimination                              (tree->size)

@@ -257,12 +257,24 @@ static void settle_blocks(Maker *maker) {
   }
 }
 
+// Of what outlives a domain.
+static void place_left(FemFrontTree *tree) {
+  for (int f = 0; f < tree->front_count; f++) {
+    FemFront *front = &tree->fronts[f];
+    size_t below = (size_t)(front->height - front->own);
+    bool outlives = front->is_top || front->parent < 0 || tree->fronts[front->parent].is_top;
+    front->left = tree->left_count;
+    if (outlives) tree->left_count += below * below;
+  }
+}
+
 static Status make(Maker *maker) {
   TRY(number_places(maker));
   measure_fronts(maker);
   TRY(list_children(maker->tree));
   choose_domains(maker->tree);
   measure_stack(maker->tree);
+  place_left(maker->tree);
   TRY(list_rows(maker));
   TRY(count_blocks(maker));
   write_blocks(maker);

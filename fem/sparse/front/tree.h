@@ -49,6 +49,7 @@ typedef struct FemFront {
   int block_begin, block_end;
   size_t values;  // of the panel (own, height), a column after the other
   size_t carried; // of the rows below in a vector of all fronts' rows below
+  size_t left;    // of what it leaves among all that outlives a domain
   double work;    // of the subtree [multiplications]
 } FemFront;
 
@@ -63,6 +64,7 @@ typedef struct FemFrontTree {
   FemFrontBlock *blocks;
   size_t value_count, carried_count;
   size_t stack;       // most that a domain holds of what fronts leave [numbers]
+  size_t left_count;  // what the roots of domains and fronts above them leave, all together [numbers]
   double entry_count; // of the factor
 } FemFrontTree;
 
