@@ -10,6 +10,12 @@
 
 enum { BLOCK = 4096, FLAT = 2 };
 
+static void abandon(DatagenCapture *capture) {
+  datagen_dataset_writer_abandon(capture->writer);
+  datagen_pairs_destroy(&capture->pairs);
+  *capture = (DatagenCapture){0};
+}
+
 Status datagen_capture_begin(DatagenCapture *capture, const char *path, const char *program,
                              DatagenLabel label) {
   DatagenInfo info;
@@ -24,7 +30,7 @@ Status datagen_capture_begin(DatagenCapture *capture, const char *path, const ch
   info.has_gradient = info.has_centroid = true;
   TRY(datagen_pairs_create(&capture->pairs, BLOCK, true));
   Status status = datagen_dataset_writer_begin(&capture->writer, path, &info);
-  if (status) datagen_capture_abandon(capture);
+  if (status) abandon(capture);
   return status;
 }
 
@@ -89,12 +95,6 @@ Status datagen_capture_commit(DatagenCapture *capture) {
     status = datagen_dataset_writer_commit(writer);
   else
     datagen_dataset_writer_abandon(writer);
-  datagen_capture_abandon(capture);
+  abandon(capture);
   return status;
-}
-
-void datagen_capture_abandon(DatagenCapture *capture) {
-  datagen_dataset_writer_abandon(capture->writer);
-  datagen_pairs_destroy(&capture->pairs);
-  *capture = (DatagenCapture){0};
 }

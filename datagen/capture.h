@@ -24,6 +24,5 @@ Status datagen_capture_append(DatagenCapture *capture, const double *pairs, int 
 // Puts the file into its place; without pairs there is none. The capture is destroyed, whatever the outcome.
 long long datagen_capture_count(const DatagenCapture *capture); // pairs so far
 Status datagen_capture_commit(DatagenCapture *capture);
-void datagen_capture_abandon(DatagenCapture *capture); // a zeroed one is accepted
 
 #endif

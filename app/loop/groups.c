@@ -48,7 +48,8 @@ static void add_of_body(AppLoopGroups *groups, FemBodyDef *body, FemModel *model
   }
 }
 
-int app_loop_group_values(const AppLoopGroup *group) {
+// At most: 3, or 3 for each vertex of a load.
+static int count_values(const AppLoopGroup *group) {
   return group->kind == APP_LOOP_DRIVE ? 3 : 3 * group->load->vertex_count;
 }
 
@@ -66,7 +67,7 @@ Status app_loop_groups_create(AppLoopGroups *groups, FemSceneDef *scene, FemMode
       add(groups, APP_LOOP_DRIVE, scene->obstacles[o].name, 0, 1)->drive = &scene->obstacles[o].motion;
   for (int g = 0; g < groups->count; g++) {
     AppLoopGroup *group = &groups->groups[g];
-    group->target = memory_zeroed((size_t)app_loop_group_values(group), sizeof *group->target);
+    group->target = memory_zeroed((size_t)count_values(group), sizeof *group->target);
     if (!group->target) return status_no_memory("the groups that are set from outside");
   }
   return STATUS_OK;
@@ -107,12 +108,12 @@ static Status check(const AppLoopGroup *group, double ramp, const double *values
     return status_fail(STATUS_INPUT, "'%s': a ramp takes a number of seconds, not %g", group->name, ramp);
   if (group->kind == APP_LOOP_DRIVE && count != 3)
     return status_fail(STATUS_INPUT, "'%s': a displacement has 3 values, not %d", group->name, count);
-  if (group->kind == APP_LOOP_DRIVE || count == 3 || count == 6 || count == app_loop_group_values(group))
+  if (group->kind == APP_LOOP_DRIVE || count == 3 || count == 6 || count == count_values(group))
     return STATUS_OK;
   return status_fail(STATUS_INPUT,
                      "'%s': a load has 3 values (force), 6 (force and moment), or %d (a force for each of "
                      "its %d vertices), not %d",
-                     group->name, app_loop_group_values(group), group->load->vertex_count, count);
+                     group->name, count_values(group), group->load->vertex_count, count);
 }
 
 // f_a = F/n + ω × r_a with Σ r_a × (ω × r_a) = M: of all forces with that sum and moment the smallest.
@@ -154,8 +155,7 @@ static Status share_wrench(const AppLoopGroup *group, const double wrench[6], co
 // What was given, as it is kept.
 static Status find_target(AppLoopGroup *group, const double *values, int count, const double *positions) {
   double wrench[6] = {0};
-  const bool is_nodal =
-      group->kind == APP_LOOP_DRIVE || (count == app_loop_group_values(group) && count != 6);
+  const bool is_nodal = group->kind == APP_LOOP_DRIVE || (count == count_values(group) && count != 6);
   if (is_nodal) {
     memcpy(group->target, values, (size_t)count * sizeof *values);
     return STATUS_OK;
@@ -205,7 +205,7 @@ static void keep(double **to, const double *values, int count) {
 }
 
 static size_t count_of(const AppLoopGroup *group) {
-  size_t values = (size_t)app_loop_group_values(group);
+  size_t values = (size_t)count_values(group);
   return 2 + values + (group->drive ? TABLE_OF_DRIVE : TABLE_OF_LOAD + 2 * values);
 }
 
@@ -213,7 +213,7 @@ size_t app_loop_groups_save(const AppLoopGroups *groups, double *values) {
   size_t count = 0;
   for (int g = 0; g < groups->count; g++) {
     const AppLoopGroup *group = &groups->groups[g];
-    const int n = app_loop_group_values(group);
+    const int n = count_values(group);
     const double flags[2] = {group->is_pending,
                              group->drive ? group->drive->table_count : group->load_def->table_count};
     count += count_of(group);
@@ -247,7 +247,7 @@ Status app_loop_groups_load(AppLoopGroups *groups, const double *values, size_t 
     return status_fail(STATUS_INPUT, "the state is of a scene with other `external: true` groups");
   for (int g = 0; g < groups->count; g++) {
     AppLoopGroup *group = &groups->groups[g];
-    const int n = app_loop_group_values(group);
+    const int n = count_values(group);
     const double rows = values[1];
     group->is_pending = values[0] != 0;
     values = fetch(group->target, values + 2, n);

@@ -21,7 +21,7 @@ typedef struct AppLoopGroup {
   FemLoad *load;
   // Set, to be reached where the next advance ends: 3 values, or 3 for each vertex of a load.
   bool is_pending;
-  double *target; // owned                                            (app_loop_group_values)
+  double *target; // owned                                            (3) or (vertices, 3)
 } AppLoopGroup;
 
 typedef struct AppLoopGroups {
@@ -34,9 +34,6 @@ typedef struct AppLoopGroups {
 // creation failed, can be destroyed.
 Status app_loop_groups_create(AppLoopGroups *groups, FemSceneDef *scene, FemModel *model);
 void app_loop_groups_destroy(AppLoopGroups *groups);
-
-// How many values a group takes at most: 3, or 3 for each vertex of a load.
-int app_loop_group_values(const AppLoopGroup *group);
 
 // The group of that kind and name. STATUS_INPUT names those that there are.
 Status app_loop_groups_find(const AppLoopGroups *groups, AppLoopKind kind, const char *name,

@@ -185,10 +185,6 @@ static Status put_numbers(DeviceOverlap *overlap, DevicePairs kind, int count, c
   return STATUS_OK;
 }
 
-Status device_overlap_put_rows(DeviceOverlap *overlap, int count, const double *pairs) {
-  return put_numbers(overlap, DEVICE_PAIRS_ROWS, count, pairs);
-}
-
 Status device_overlap_put_columns(DeviceOverlap *overlap, int count, const double *pairs) {
   return put_numbers(overlap, DEVICE_PAIRS_COLUMNS, count, pairs);
 }
@@ -383,7 +379,7 @@ Status device_overlap_eval(DeviceOverlap *overlap, const OverlapBatch *batch) {
   const DeviceQuantity quantity = batch->gradient   ? DEVICE_GRADIENT
                                   : batch->centroid ? DEVICE_CENTROID
                                                     : DEVICE_VOLUME;
-  TRY(device_overlap_put_rows(overlap, batch->pair_count, batch->pairs));
+  TRY(put_numbers(overlap, DEVICE_PAIRS_ROWS, batch->pair_count, batch->pairs));
   TRY(device_overlap_run(overlap, quantity));
   return device_overlap_get(overlap, batch->volume, batch->gradient ? batch->gradient : batch->centroid,
                             batch->flags);

@@ -39,7 +39,6 @@ DeviceArithmetic device_overlap_arithmetic(const DeviceOverlap *overlap);
 const char *device_overlap_weights(const DeviceOverlap *overlap);
 
 // What the next evaluations are of: sent to the device, where it stays.
-Status device_overlap_put_rows(DeviceOverlap *overlap, int count, const double *pairs);
 Status device_overlap_put_columns(DeviceOverlap *overlap, int count, const double *pairs);
 // positions (vertex_count, 3), tets (tet_count, 4), pairs (count, 2): tetrahedra.
 Status device_overlap_put_mesh(DeviceOverlap *overlap, int vertex_count, const double *positions,

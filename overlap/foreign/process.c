@@ -64,8 +64,8 @@ static void end_group(Process *process, int *how) {
 }
 
 // Waits until it has ended; false: it has not by then. What it has started ends, too.
-static bool reap(Process *process, double seconds, int *how) {
-  for (double end = now() + seconds; process->pid > 0;) {
+static bool reap(Process *process, int *how) {
+  for (double end = now() + SECONDS_TO_END; process->pid > 0;) {
     if (has_ended(process)) {
       end_group(process, how);
       return true;
@@ -92,7 +92,7 @@ static void close_process(void *self) {
   if (process->map) munmap(process->map, process->capacity * PAIR_BYTES);
   disconnect(process);
   if (process->memory >= 0) close(process->memory);
-  if (!reap(process, SECONDS_TO_END, &how)) stop(process);
+  if (!reap(process, &how)) stop(process);
   memory_free(process->name), memory_free(process->range);
   memory_free(process);
 }
@@ -102,7 +102,7 @@ static Status fail_ended(Process *process) {
   int how = 0;
   const pid_t pid = process->pid;
   if (pid == 0) return status_fail(STATUS_DEVICE, "%s: the process with the model has ended", process->name);
-  if (!reap(process, SECONDS_TO_END, &how)) {
+  if (!reap(process, &how)) {
     stop(process);
     return status_fail(STATUS_DEVICE, "%s: the model's process closed its socket", process->name);
   }

@@ -74,7 +74,7 @@ void overlap_geo_coplanar_pull(const OverlapGeoFrame *frame, const OverlapGeoCop
   GeoMatrix slope; // ∂w/∂P
   OverlapGeoAdjoint adjoint;
   find_share_slope(coplanar, &frame->projector, &slope);
-  overlap_geo_frame_pull_phi(frame, &slope, &adjoint);
+  overlap_geo_frame_pull(frame, &slope, 0, &adjoint);
   memcpy(gradient, adjoint.gradient, sizeof adjoint.gradient);
   if (!hessian) return;
   int moved = overlap_geo_hessian_moved(frame), first = moved * SIZE / 2;

@@ -80,8 +80,8 @@ static inline double coupling(const GeoMatrix *response, const double shift[GEO_
   return (response->row[k][k] - response->row[k][a]) - (shift[k] - shift[a]);
 }
 
-static void pull(const OverlapGeoFrame *frame, const GeoMatrix *slope, double own,
-                 OverlapGeoAdjoint *adjoint) {
+void overlap_geo_frame_pull(const OverlapGeoFrame *frame, const GeoMatrix *slope, double own,
+                            OverlapGeoAdjoint *adjoint) {
   adjoint->own = own;
   multiply(slope, &frame->projector, &adjoint->slope);
   project_out(frame, &adjoint->slope, &adjoint->response);
@@ -100,16 +100,6 @@ static void pull(const OverlapGeoFrame *frame, const GeoMatrix *slope, double ow
     }
     for (int c = 0; c < 3; c++) adjoint->gradient[3 * a + c] = frame->slack[a] * sum[c];
   }
-}
-
-void overlap_geo_frame_pull(const OverlapGeoFrame *frame, const GeoMatrix *slope,
-                            OverlapGeoAdjoint *adjoint) {
-  pull(frame, slope, 1, adjoint);
-}
-
-void overlap_geo_frame_pull_phi(const OverlapGeoFrame *frame, const GeoMatrix *slope,
-                                OverlapGeoAdjoint *adjoint) {
-  pull(frame, slope, 0, adjoint);
 }
 
 // y = Θ x, with Θ = −diag(rate) − τ.

@@ -59,10 +59,9 @@ typedef struct OverlapGeoAdjoint {
   double own;              // 1; 0: of φ alone, and A without its −P
 } OverlapGeoAdjoint;
 
-void overlap_geo_frame_pull(const OverlapGeoFrame *frame, const GeoMatrix *slope, OverlapGeoAdjoint *adjoint);
-// The same of φ alone, with the bend that follows.
-void overlap_geo_frame_pull_phi(const OverlapGeoFrame *frame, const GeoMatrix *slope,
-                                OverlapGeoAdjoint *adjoint);
+// `own` as in OverlapGeoAdjoint, which the bend that follows reads.
+void overlap_geo_frame_pull(const OverlapGeoFrame *frame, const GeoMatrix *slope, double own,
+                            OverlapGeoAdjoint *adjoint);
 
 // The change of the frame along a direction in the 24 coordinates.
 typedef struct OverlapGeoTangent {

@@ -3,16 +3,14 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
 import tempfile
 from pathlib import Path
 
 import numpy as np
 
 from . import _locate
-from ._errors import RunError
-from ._run import _place_scene, _Words
+from ._compare import _execute
+from ._run import _place_scene
 from ._scene import Scene, Settings, override_texts
 from ._weights import read_weights
 
@@ -22,25 +20,6 @@ def _names(value, what, example):
     if not names or not all(isinstance(name, str) for name in names):
         raise TypeError(f"{what} is {value!r}; expected a text as {example!r}, or a list of such texts")
     return names
-
-
-def _execute(command):
-    process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace")
-    said = _Words(process.stderr)
-    try:
-        out = process.stdout.read()
-        process.wait()
-    except BaseException:
-        process.kill()
-        process.wait()
-        raise
-    finally:
-        process.stdout.close()
-        said.join()
-    if process.returncode != 0:
-        message = "\n".join(said.errors) or f"exit code {process.returncode}"
-        raise RunError(f"tetlap gradient failed: {message}", process.returncode, None)
-    return json.loads(out)
 
 
 def _number(value):
@@ -118,9 +97,9 @@ def gradient(scene: Scene, of: str | list[str], by: str | list[str], *, set: Set
     command += ["--total"] * bool(total)
     try:
         if not weights:
-            return _arrays(_execute(command), of, by)
+            return _arrays(_execute(command, []), of, by)
         with tempfile.TemporaryDirectory() as folder:
-            found = _arrays(_execute([*command, "--weights", str(Path(folder) / "slope.safetensors")]), of, by)
+            found = _arrays(_execute([*command, "--weights", str(Path(folder) / "slope.safetensors")], []), of, by)
             return {**found, "weights": _read_slopes(folder, len(of))}
     finally:
         del keeper

@@ -91,7 +91,7 @@ START_TEST(frames_and_gradients_are_the_scalar_ones) {
       OverlapGeoCoplanar coplanar;
       overlap_geo_coplanar_find(&frame.projector, &coplanar);
       ck_assert_int_eq(block.is_close[column] > 0, coplanar.count > 0);
-      overlap_geo_frame_pull(&frame, &slope, &adjoint);
+      overlap_geo_frame_pull(&frame, &slope, 1, &adjoint);
       double largest = 0, least = 1;
       for (int k = 0; k < 24; k++) largest = fmax(largest, fabs(adjoint.gradient[k]));
       for (int k = 0; k < 8; k++) least = fmin(least, frame.slack[k]);
@@ -145,7 +145,7 @@ START_TEST(features_and_their_gradients_are_the_scalar_ones) {
     for (int f = 0; f < set->count; f++) weights[f][0] = block.weights[f][j];
     one->pull(set, &invariants, weights, &sweep, &packed);
     packs_take_matrix(&packed, 0, &slope);
-    overlap_geo_frame_pull(&frame, &slope, &adjoint);
+    overlap_geo_frame_pull(&frame, &slope, 1, &adjoint);
     double largest = 0;
     for (int k = 0; k < 24; k++) largest = fmax(largest, fabs(adjoint.gradient[k]));
     for (int f = 0; f < set->count; f++)
@@ -218,7 +218,7 @@ static void bend_alone(const OverlapGeoFeatureSet *set, const OverlapGeoFrame *f
   one->features(set, &projector, &invariants, packs);
   one->pull(set, &invariants, weight_packs, &sweep, &packed);
   packs_take_matrix(&packed, 0, &slope);
-  overlap_geo_frame_pull(frame, &slope, &adjoint);
+  overlap_geo_frame_pull(frame, &slope, 1, &adjoint);
   memcpy(gradient, adjoint.gradient, sizeof adjoint.gradient);
   for (int j = 0; j < 24; j++) {
     double direction[24] = {0}, column[24];
