@@ -253,6 +253,12 @@ Status fem_statics_continue(FemStatics *statics, double time, const double *u, d
   return STATUS_OK;
 }
 
+// Rigid motions that nothing hinders have eigenvalues of zero, which rounding may make negative. Pencil of K
+// and M: rounding is DBL_EPSILON · 12 (L/h)² of E/(ρ L²), 3e-11 of it with a hundred elements in a row; forces
+// that balance to 1e-6 add that share of the strain. A column's are (b/L)² of it, 1e-6 if a thousand times as
+// long as wide.
+static const double NEUTRAL = 1e-7;
+
 // The sign of K's eigenvalues at the equilibrium that was found last.
 static Status watch_stability(FemStatics *statics, double from, double to, const double *u) {
   FemEquilibrium *equilibrium = &statics->equilibrium;
@@ -260,7 +266,8 @@ static Status watch_stability(FemStatics *statics, double from, double to, const
   long long failures = equilibrium->ops->stats(equilibrium->solver)->failed_factorisations;
   bool is_doubtful = failures > statics->failures;
   if (is_doubtful) {
-    Status status = fem_equilibrium_factorise(equilibrium, to, u, 0);
+    double shift = NEUTRAL * fem_equilibrium_first_shift(equilibrium);
+    Status status = fem_equilibrium_factorise(equilibrium, to, u, shift);
     if (status < 0) return status;
     int count = -1;
     if (status == STATUS_RETRY) {

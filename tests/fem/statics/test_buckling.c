@@ -52,9 +52,32 @@ START_TEST(below_it_nothing_is_told) {
 }
 END_TEST
 
+// A cube between two plates, free to slide and turn: neutral, not unstable.
+START_TEST(what_slides_freely_between_plates_is_not_unstable) {
+  SceneRun run;
+  scene_open_text(&run, "time: {end: 1, static: true}\n"
+                        "output: {frames: 10}\n"
+                        "bodies:\n"
+                        "  - name: cube\n"
+                        "    mesh: {box: {size: [0.04, 0.04, 0.04], cells: 4}}\n"
+                        "    material: {young: 1e6, poisson: 0.45, density: 1000}\n"
+                        "contact: {}\n"
+                        "obstacles:\n"
+                        "  - {name: floor, halfspace: {point: [0, 0, 0], normal: [0, 0, 1]}}\n"
+                        "  - name: plate\n"
+                        "    halfspace: {point: [0, 0, 0.04], normal: [0, 0, -1]}\n"
+                        "    motion: {velocity: [0, 0, -0.016]}\n");
+  scene_run_from(&run, NULL);
+  ck_assert_int_eq(run.status, STATUS_OK);
+  ck_assert_int_eq(run.result.equilibrium.stability.unstable, 0);
+  scene_close(&run);
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("buckling");
   tcase_add_test(test_case, a_column_loses_its_stability_at_eulers_load);
   tcase_add_test(test_case, below_it_nothing_is_told);
+  tcase_add_test(test_case, what_slides_freely_between_plates_is_not_unstable);
   return suite_run("buckling", test_case, 60);
 }
