@@ -15,14 +15,18 @@ typedef struct Balanced {
 } Balanced;
 
 // A block in the air; no force acts unless a test says so.
-static void open_balanced(Balanced *balanced, const char *const *overrides) {
-  scene_open(&balanced->run, "free_fall", overrides);
+static void open_scene(Balanced *balanced, const char *scene, const char *const *overrides) {
+  scene_open(&balanced->run, scene, overrides);
   const FemModel *model = &balanced->run.model;
   ck_assert_ok(fem_numbering_create(&balanced->numbering, model));
   ck_assert_ok(fem_part_create(&balanced->part, model, &balanced->numbering));
   ck_assert_ok(fem_balance_create(&balanced->balance, model->body_count));
   balanced->residual = calloc((size_t)balanced->numbering.count, sizeof(double));
   balanced->forces = calloc(3 * (size_t)model->vertex_count, sizeof(double));
+}
+
+static void open_balanced(Balanced *balanced, const char *const *overrides) {
+  open_scene(balanced, "free_fall", overrides);
 }
 
 static double excess_under(Balanced *balanced, const double *pressing) {
@@ -95,6 +99,20 @@ START_TEST(without_weight_and_motion_rounding_of_what_the_tolerance_strains_is_a
 }
 END_TEST
 
+START_TEST(a_held_body_without_contact_balances_to_as_many_times_as_its_energy) {
+  Balanced balanced;
+  open_scene(&balanced, "cantilever", NULL);
+  double *pressing = calloc(3 * (size_t)balanced.run.model.vertex_count, sizeof(double));
+  double weight = 1 * balanced.run.model.bodies[0].mass; // under 1 m/s²
+  check_edge(&balanced, NULL, &balanced.residual[5], 20 * 2e-4 * weight);
+  check_edge(&balanced, pressing, &balanced.residual[5], 2e-4 * weight);
+  balanced.residual[5] = NAN;
+  ck_assert(!(excess(&balanced) <= 1));
+  free(pressing);
+  close_balanced(&balanced);
+}
+END_TEST
+
 START_TEST(a_residual_that_is_no_number_does_not_balance) {
   Balanced balanced;
   open_balanced(&balanced, NULL);
@@ -110,6 +128,7 @@ int main(void) {
   tcase_add_test(cases, what_accelerates_balances_to_a_share_of_what_that_takes);
   tcase_add_test(cases, without_gravity_the_forces_of_contact_count_in_place_of_the_weight);
   tcase_add_test(cases, without_weight_and_motion_rounding_of_what_the_tolerance_strains_is_allowed);
+  tcase_add_test(cases, a_held_body_without_contact_balances_to_as_many_times_as_its_energy);
   tcase_add_test(cases, a_residual_that_is_no_number_does_not_balance);
   return suite_run("balance", cases, 20);
 }
