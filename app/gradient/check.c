@@ -72,16 +72,24 @@ typedef struct Direction {
   double ways[APP_GRADIENT_MOST]; // of each parameter, in its unit
 } Direction;
 
+// Whether another run can differ by this parameter alone: --set has no rest positions, and a contact
+// stiffness that is chosen changes with shape.
+static bool can_differ(const FemParameter *parameter, const char *stiffness) {
+  bool is_kept = strcmp(stiffness, "kept") == 0, is_chosen = is_kept || strcmp(stiffness, "follows") == 0;
+  bool chooses = parameter->kind == FEM_PARAMETER_YOUNG || parameter->kind == FEM_PARAMETER_POISSON;
+  if (parameter->kind == FEM_PARAMETER_REST) return false;
+  return fem_parameter_is_of_shape(parameter) ? !is_chosen : !(chooses && is_kept);
+}
+
 static Direction draw_direction(const FemModel *model, const AppGradientWords *words,
                                 const AppGradientAnswer *answer) {
   Direction direction = {.step = model->scene->is_static ? OF_STATIC : OF_MOTION};
   Random random = random_seeded(SEED, 0);
-  bool keeps = strcmp(app_gradient_stiffness(model, words), "kept") == 0;
+  const char *stiffness = app_gradient_stiffness(model, words);
   for (int p = 0; p < words->by_count; p++) {
     const FemParameter *parameter = &answer->parameters[p];
-    bool chooses = parameter->kind == FEM_PARAMETER_YOUNG || parameter->kind == FEM_PARAMETER_POISSON;
     double share = random_between(&random, -1, 1);
-    if (!(chooses && keeps)) direction.ways[p] = share * fem_parameter_value(model, parameter);
+    if (can_differ(parameter, stiffness)) direction.ways[p] = share * fem_parameter_value(model, parameter);
   }
   return direction;
 }

@@ -67,6 +67,13 @@ class Gradient(unittest.TestCase):
         self.assertLess(found["halved"].max(), 1e-8)
         np.testing.assert_allclose(found["along_by_runs"], found["along_by_derivatives"], rtol=1e-6)
 
+    def test_a_check_keeps_shapes_by_which_other_runs_differ_otherwise(self):
+        chosen = {**TWO, "contact": {}}
+        for scene, shape in ((chosen, "bodies.upper.place.scale"), (TWO, "bodies.upper.rest[1][2]")):
+            found = tetlap.gradient(scene, "energy:contact", [shape, "bodies.upper.material.density"], check=True)
+            self.assertNotEqual(found["derivative"][0, 0], 0)
+            np.testing.assert_allclose(found["along_by_runs"], found["along_by_derivatives"], rtol=1e-5)
+
     def test_slopes_by_weights_lead_to_other_quantities(self):
         scene, of = TWO, ["displacement:upper:z", "moment:upper:block:x"]
         found = tetlap.gradient(scene, of, [], set={"contact.overlap": "geo-small"}, weights=True)

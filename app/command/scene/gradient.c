@@ -134,9 +134,9 @@ static void print_head(const Answer *answer, int g) {
   else
     printf(", of the matrix %.1e\n", gradient->mismatches[g]);
   if (answer->options->is_checked && isnan(answer->check.along[g]))
-    printf(
-        "along a random direction: not found, since these parameters are 0, or the contact stiffness that is "
-        "chosen from them is kept (--total lets it follow)\n");
+    printf("along a random direction: not found, since these parameters are 0 or rest positions, or change a "
+           "contact "
+           "stiffness that is chosen and kept (of E and ν --total lets it follow)\n");
   else if (answer->options->is_checked)
     printf("along a random direction: %.10g by the derivatives, %.10g by a difference of runs\n",
            answer->check.along[g], answer->check.between[g]);

@@ -51,6 +51,22 @@ START_TEST(a_driven_slab_that_grows_agrees_with_differences_of_runs) {
 }
 END_TEST
 
+static const char *const contacts[] = {
+    "contact.overlap=geo", "contact.overlap=hybrid",
+    "contact={law: {power: {pressure: 1e4, depth: 0.005, exponent: 1.5}}}",
+    "contact={law: {exponential: {pressure: 1e4, depth: 0.005}}}",
+    "contact={law: {table: [[0, 0], [0.002, 3e3], [0.004, 9e3], [0.01, 5e4]]}}"};
+
+START_TEST(blocks_that_grow_by_learned_overlaps_and_laws_agree_with_differences_of_runs) {
+  const Asked asked = {.scene = "gradient_blocks",
+                       .setting = contacts[_i],
+                       .of = {"displacement:upper:z", "position:upper:3:x", "force:upper:z", "moment:upper:x",
+                              "energy:elastic"},
+                       .by = {UPPER "scale", LOWER "scale"}};
+  check_against_runs(&asked);
+}
+END_TEST
+
 // dg/ds = Σ dg/dX · ∂X/∂s, X = t + s X₀.
 START_TEST(derivatives_by_rest_positions_sum_to_that_by_scale) {
   static const double translate[] = {0.17, 0.23, 0.499};
@@ -144,6 +160,8 @@ int main(void) {
                       0, 2);
   tcase_add_test(test_case, a_slab_of_quadratic_elements_that_grows_agrees_with_differences_of_runs);
   tcase_add_test(test_case, a_driven_slab_that_grows_agrees_with_differences_of_runs);
+  tcase_add_loop_test(test_case, blocks_that_grow_by_learned_overlaps_and_laws_agree_with_differences_of_runs,
+                      0, sizeof contacts / sizeof *contacts);
   tcase_add_test(test_case, derivatives_by_rest_positions_sum_to_that_by_scale);
   tcase_add_test(test_case, a_stiffness_that_is_chosen_is_kept);
   tcase_add_test(test_case, what_has_no_derivative_by_shape_is_refused);
