@@ -135,8 +135,7 @@ static void print_head(const Answer *answer, int g) {
     printf(", of the matrix %.1e\n", gradient->mismatches[g]);
   if (answer->options->is_checked && isnan(answer->check.along[g]))
     printf("along a random direction: not found, since these parameters are 0 or rest positions, or change a "
-           "contact "
-           "stiffness that is chosen and kept (of E and ν --total lets it follow)\n");
+           "contact stiffness that is chosen and kept (of E and ν --total lets it follow)\n");
   else if (answer->options->is_checked)
     printf("along a random direction: %.10g by the derivatives, %.10g by a difference of runs\n",
            answer->check.along[g], answer->check.between[g]);
