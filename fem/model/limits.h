@@ -83,8 +83,7 @@
 #define FEM_BALANCE (FEM_RESERVE * FEM_MOMENTUM)
 
 // … or to this share of what its acceleration takes, if that is more. What is left turns a stiff body that
-// flies, and gives it energy. A body that is held cannot turn on: without contact, where
-// FEM_WITHOUT_CONTACT times as much energy is allowed, so is an unbalanced force.
+// flies, and gives it energy.
 // Held by test_balance, test_scenes.
 #define FEM_BALANCE_OF_INERTIA (2 * FEM_MOMENTUM)
 

@@ -43,13 +43,6 @@ static void sum_up(FemBalance *balance, const FemModel *model, const FemPart *pa
   ranks()->sum(balance->needed, (size_t)model->body_count);
 }
 
-// Whether coordinates of a body are prescribed.
-static bool is_held(const FemNumbering *numbering, const FemModelBody *body) {
-  for (int dof = 3 * body->vertex_begin; dof < 3 * body->vertex_end; dof++)
-    if (numbering->unknown_of_dof[dof] < 0) return true;
-  return false;
-}
-
 static double young_of(const FemMaterial *material) {
   return material->young;
 }
@@ -67,7 +60,6 @@ double fem_balance_excess(FemBalance *balance, const FemModel *model, const FemP
     double young = fem_model_parts_least(model, b, young_of);
     double least = FEM_ROUNDING * model->scene->tolerance * young * model->edge * model->edge;
     double excess = balance->unbalanced[b] / fmax(needed, least);
-    if (!pressing && is_held(part->numbering, body)) excess /= FEM_WITHOUT_CONTACT;
     if (!(excess <= worst)) worst = isnan(excess) ? INFINITY : excess;
   }
   return worst;
