@@ -9,6 +9,7 @@
 #include "fem/effect/contact/contact.h"
 #include "fem/gradient/difference.h"
 #include "fem/mesh/mesh.h"
+#include "fem/model/build.h"
 
 // The largest strain of an edge between two points of a difference. What the sixth order omits is below
 // (3e-3)⁶, rounding 1e-16/1e-3. Contact: 1e-6², and 1e-16/1e-6; its kinks are sought that near to the shape.
@@ -66,15 +67,8 @@ static void measure(FemModel *model) {
     for (int k = 0; k < FEM_QUADRATIC_NODES; k++)
       memcpy(nodes + 3 * k, model->rest + 3 * (size_t)from[k], 3 * sizeof *nodes);
     fem_quadratic_create_curved(&model->quadratics[e], nodes);
-    double mass = model->parts[model->quadratic_part[e]].material.density * model->quadratics[e].volume;
-    for (int k = 0; k < FEM_QUADRATIC_NODES; k++) model->mass[from[k]] += fem_quadratic_mass_share(k) * mass;
   }
-  for (int e = 0; e < model->tet_count; e++) {
-    int part = model->tet_part[e];
-    if (part < 0 || model->bodies[model->tet_body[e]].element == FEM_ELEMENT_QUADRATIC) continue;
-    double share = 0.25 * model->parts[part].material.density * model->volumes[e];
-    for (int k = 0; k < 4; k++) model->mass[model->tets[e][k]] += share;
-  }
+  for (int b = 0; b < model->scene->body_count; b++) fem_model_lump(model, &model->bodies[b]);
 }
 
 // A body's tetrahedra by its own vertices; `tets` and `nodes` have room for all of the model.

@@ -75,32 +75,30 @@ static void append_mesh(FemModel *model, FemModelBody *body, const FemMesh *mesh
   }
 }
 
-static void add_mass(FemModel *model, FemModelBody *body, int part, double mass) {
-  model->parts[part].mass += mass;
-  body->mass += mass;
-}
-
-static void lump_quadratic_mass(FemModel *model, FemModelBody *body) {
+void fem_model_lump(FemModel *model, const FemModelBody *body) {
   for (int e = body->quadratic_begin; e < body->quadratic_end; e++) {
-    int part = model->quadratic_part[e];
-    double mass = model->parts[part].material.density * model->quadratics[e].volume;
+    double mass = model->parts[model->quadratic_part[e]].material.density * model->quadratics[e].volume;
     for (int k = 0; k < FEM_QUADRATIC_NODES; k++)
       model->mass[model->quadratic_nodes[e][k]] += fem_quadratic_mass_share(k) * mass;
-    add_mass(model, body, part, mass);
+  }
+  if (body->element == FEM_ELEMENT_QUADRATIC) return;
+  for (int e = body->tet_begin; e < body->tet_end; e++) {
+    double share = 0.25 * model->parts[model->tet_part[e]].material.density * model->volumes[e];
+    for (int k = 0; k < 4; k++) model->mass[model->tets[e][k]] += share;
   }
 }
 
-static void lump_mass(FemModel *model, FemModelBody *body) {
-  if (body->element == FEM_ELEMENT_QUADRATIC) {
-    lump_quadratic_mass(model, body);
-    return;
+static void weigh(FemModel *model, FemModelBody *body) {
+  const bool is_quadratic = body->element == FEM_ELEMENT_QUADRATIC;
+  int begin = is_quadratic ? body->quadratic_begin : body->tet_begin;
+  int end = is_quadratic ? body->quadratic_end : body->tet_end;
+  for (int e = begin; e < end; e++) {
+    FemModelPart *part = &model->parts[is_quadratic ? model->quadratic_part[e] : model->tet_part[e]];
+    double volume = is_quadratic ? model->quadratics[e].volume : model->volumes[e];
+    part->mass += part->material.density * volume;
+    body->mass += part->material.density * volume;
   }
-  for (int e = body->tet_begin; e < body->tet_end; e++) {
-    int part = model->tet_part[e];
-    double share = 0.25 * model->parts[part].material.density * model->volumes[e];
-    for (int k = 0; k < 4; k++) model->mass[model->tets[e][k]] += share;
-    add_mass(model, body, part, 4 * share);
-  }
+  fem_model_lump(model, body);
 }
 
 // v = velocity + spin × (x − centre of mass).
@@ -118,7 +116,7 @@ static Status append_body(FemModel *model, FemModelBody *body, const FemMesh *me
   body->name = def->name;
   body->element = def->element;
   TRY(fem_model_parts_append(model, (int)(body - model->bodies), mesh));
-  lump_mass(model, body);
+  weigh(model, body);
   set_velocity(model, body, def);
   return STATUS_OK;
 }

@@ -11,4 +11,7 @@
 Status fem_model_create(FemModel *model, const FemSceneDef *scene);
 void fem_model_destroy(FemModel *model);
 
+// Adds the masses of a body's elements, by their volumes, to those of its vertices.
+void fem_model_lump(FemModel *model, const FemModelBody *body);
+
 #endif

@@ -189,6 +189,8 @@ class Torch(unittest.TestCase):
             tetlap.torch.run(SCENE, {YOUNG: 1e5}, "energy")
         with self.assertRaisesRegex(ValueError, "one number"):
             tetlap.torch.run(SCENE, {YOUNG: self.torch.ones(2)}, "energy")
+        with self.assertRaisesRegex(ValueError, "no value of a scene"):
+            tetlap.torch.run(SCENE, {"bodies.block.rest[3][2]": self.torch.tensor(0.1)}, "energy")
 
 
 if __name__ == "__main__":

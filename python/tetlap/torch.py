@@ -160,6 +160,8 @@ def _check_parameters(parameters, network):
     if not parameters and network is None:
         raise ValueError("parameters is empty; expected {'bodies.block.material.young': tensor}")
     for key, value in parameters.items():
+        if ".rest[" in key:
+            raise ValueError(f"{key} is no value of a scene, which a run could be given; tetlap.gradient has derivatives by it")
         if not isinstance(value, torch.Tensor):
             raise TypeError(f"{key} is a {type(value).__name__}; expected a torch.Tensor")
         if value.dim() != 0 or value.device.type != "cpu":
