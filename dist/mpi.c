@@ -20,6 +20,7 @@
 #include "base/status.h"
 #include "dist/division.h"
 #include "dist/inside.h"
+#include "overlap/foreign/guard.h"
 
 enum { MESSAGE_SIZE = 2048, POLL_NS = 2000000 };
 // A rank that failed and finds the others elsewhere ends the run after this time [s]; later ones wait longer,
@@ -171,6 +172,10 @@ static void end(int exit_code, void *argument) {
   MPI_Finalize();
 }
 
+static void end_called(int exit_code) {
+  end(exit_code, NULL);
+}
+
 // What this rank prints goes nowhere, and its errors are kept.
 static void fall_silent(void) {
   int nowhere = open("/dev/null", O_WRONLY), kept = memfd_create("errors", MFD_CLOEXEC);
@@ -214,5 +219,6 @@ void dist_mpi_begin(int *argument_count, char ***arguments, void (*close)(void))
   }
   ranks_set(table.count > 1 ? &table : NULL);
   on_exit(end, NULL);
+  overlap_foreign_guard_set_end(end_called);
   if (table.number > 0) fall_silent();
 }

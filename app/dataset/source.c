@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/dataset/source.h"
 
+#include <string.h>
+
 #include "base/text.h"
 #include "datagen/generate.h"
 
@@ -111,4 +113,15 @@ void app_dataset_source_describe(const AppSourceDef *def, const AppSource *sourc
               (unsigned long long)def->seed, source->count);
   if (source->plan.law.swap_share > 0)
     text_append(text, size, &used, ", %g of them exchanged", source->plan.law.swap_share);
+}
+
+bool app_dataset_source_is_paper(const AppSourceDef *def, const AppSource *source) {
+  static const char name[] = "paper-test";
+  DatagenLaw law;
+  if (!source->dataset) return strcmp(def->law, name) == 0 && !def->volume;
+  const DatagenInfo *info = datagen_dataset_info(source->dataset);
+  char volume[DATAGEN_VOLUME_TEXT];
+  if (strcmp(info->law, name) != 0 || datagen_law_find(name, &law) != STATUS_OK) return false;
+  datagen_volume_law_print(&law.volume, volume, sizeof volume);
+  return strcmp(info->volume_law, volume) == 0;
 }

@@ -44,4 +44,7 @@ Status app_dataset_source_load(const AppSourceDef *def, DatagenPairs *pairs, siz
 // The law, or the file, in words: "law scene, mix scene=1, seed 7, 1000 pairs".
 void app_dataset_source_describe(const AppSourceDef *def, const AppSource *source, char *text, size_t size);
 
+// Whether the pairs are of the paper's test law, unchanged.
+bool app_dataset_source_is_paper(const AppSourceDef *def, const AppSource *source);
+
 #endif

@@ -230,6 +230,7 @@ static void add_pair(AppEvaluationRun *run, const Block *block, size_t i) {
   run->sums.count++;
   run->sums.fallbacks += (block->flags[i] & OVERLAP_FALLBACK) != 0;
   run->sums.blended += (block->flags[i] & OVERLAP_BLENDED) != 0;
+  run->sums.unsound += (block->flags[i] & OVERLAP_UNSOUND) != 0;
   if (volume > 0)
     add_inside(run, block, i);
   else

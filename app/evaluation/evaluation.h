@@ -35,6 +35,7 @@ typedef struct AppEvaluation {
   long long count;  // pairs
   long long inside; // with V > 0: what mae … angle_p90_deg are taken over
   long long fallbacks, blended;
+  long long unsound; // V was below 0, and counts as 0, or is above the smaller tetrahedron
   double handed_on, handed_on_in_part; // shares of those with V > 0 that a more careful model answers
   AppEvaluationKind kinds[DATAGEN_KIND_COUNT];
   double accuracy_mean, accuracy_swapped_mean;      // mean over the kinds that there are

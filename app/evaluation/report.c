@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "app/table/table.h"
 
@@ -98,14 +99,20 @@ static const AppTableColumn figure_columns[] = {
     NUMBER(paper, "paper"),
 };
 
+enum { MAX_COLUMNS = 8 };
+
 static Status print_rows(const AppTableColumn *columns, int column_count, const Row *rows, int count,
-                         FILE *stream) {
-  const AppTablePart part = {columns, column_count, rows, sizeof *rows};
+                         bool is_paper, FILE *stream) {
+  AppTableColumn shown[MAX_COLUMNS];
+  int shown_count = 0;
+  for (int k = 0; k < column_count; k++)
+    if (is_paper || strcmp(columns[k].head, "paper") != 0) shown[shown_count++] = columns[k];
+  const AppTablePart part = {shown, shown_count, rows, sizeof *rows};
   fputc('\n', stream);
   return app_table_print(&(AppTable){&part, 1, count}, APP_TABLE_PLAIN, stream);
 }
 
-static Status print_kinds(const AppEvaluation *evaluation, FILE *stream) {
+static Status print_kinds(const AppEvaluation *evaluation, bool is_paper, FILE *stream) {
   Row rows[DATAGEN_KIND_COUNT];
   int count = 0;
   for (int k = 0; k < DATAGEN_KIND_COUNT; k++) {
@@ -123,10 +130,10 @@ static Status print_kinds(const AppEvaluation *evaluation, FILE *stream) {
       if (paper_kinds[p].kind == (DatagenKind)k)
         row->paper_right = 100 * paper_kinds[p].accuracy, row->paper_mae = paper_kinds[p].mae;
   }
-  return print_rows(kind_columns, sizeof kind_columns / sizeof *kind_columns, rows, count, stream);
+  return print_rows(kind_columns, sizeof kind_columns / sizeof *kind_columns, rows, count, is_paper, stream);
 }
 
-static Status print_bins(const AppEvaluation *evaluation, FILE *stream) {
+static Status print_bins(const AppEvaluation *evaluation, bool is_paper, FILE *stream) {
   Row rows[APP_EVALUATION_BINS];
   for (int b = 0; b < APP_EVALUATION_BINS; b++)
     rows[b] = (Row){.name = bin_names[b],
@@ -135,11 +142,12 @@ static Status print_bins(const AppEvaluation *evaluation, FILE *stream) {
                     .paper_right = 100 * paper_bin_accuracy[b],
                     .mae = evaluation->bin_mae[b],
                     .paper_mae = paper_bin_mae[b]};
-  return print_rows(bin_columns, sizeof bin_columns / sizeof *bin_columns, rows, APP_EVALUATION_BINS, stream);
+  return print_rows(bin_columns, sizeof bin_columns / sizeof *bin_columns, rows, APP_EVALUATION_BINS,
+                    is_paper, stream);
 }
 
 // What the model does not give is left out.
-static Status print_figures(const AppEvaluation *evaluation, FILE *stream) {
+static Status print_figures(const AppEvaluation *evaluation, bool is_paper, FILE *stream) {
   Row rows[FIGURE_COUNT];
   int count = 0;
   for (int f = 0; f < FIGURE_COUNT; f++) {
@@ -150,21 +158,27 @@ static Status print_figures(const AppEvaluation *evaluation, FILE *stream) {
                           .value = figures[f].unit[0] == '%' ? 100 * value : value,
                           .paper = figures[f].paper};
   }
-  return print_rows(figure_columns, sizeof figure_columns / sizeof *figure_columns, rows, count, stream);
+  return print_rows(figure_columns, sizeof figure_columns / sizeof *figure_columns, rows, count, is_paper,
+                    stream);
 }
 
 Status app_evaluation_print(const AppEvaluation *evaluation, const char *model, const char *data,
-                            FILE *stream) {
+                            bool is_paper, FILE *stream) {
   fprintf(stream,
           "%s on %s\n%lld pairs, %lld share volume, %lld answered by a more careful model, %lld in part\n",
           model, data, evaluation->count, evaluation->inside, evaluation->fallbacks, evaluation->blended);
-  TRY(print_kinds(evaluation, stream));
-  if (evaluation->inside) TRY(print_bins(evaluation, stream));
-  TRY(print_figures(evaluation, stream));
+  if (evaluation->unsound)
+    fprintf(stream, "%lld volumes are unsound: below 0, and count as 0, or above the smaller tetrahedron\n",
+            evaluation->unsound);
+  TRY(print_kinds(evaluation, is_paper, stream));
+  if (evaluation->inside) TRY(print_bins(evaluation, is_paper, stream));
+  TRY(print_figures(evaluation, is_paper, stream));
   fputs(evaluation->has_status ? "\nstatus: the sign of the logit, right if the closed tetrahedra meet\n"
                                : "\nstatus: V > 0, right if the pair shares volume; a touch counts as none\n",
         stream);
-  fputs("paper: Table 4 of TetrahedronPairNet, on its authors' pairs; those of --law paper-test are alike\n",
+  if (is_paper)
+    fputs(
+        "paper: Table 4 of TetrahedronPairNet, on its authors' pairs; those of --law paper-test are alike\n",
         stream);
   return STATUS_OK;
 }
@@ -186,6 +200,7 @@ void app_evaluation_record(const AppEvaluation *evaluation, Record *record) {
   record_integer(record, "count_with_volume", evaluation->inside);
   record_integer(record, "fallbacks", evaluation->fallbacks);
   record_integer(record, "blended", evaluation->blended);
+  record_integer(record, "unsound_pairs", evaluation->unsound);
   record_bool(record, "has_status", evaluation->has_status);
   Record *accuracy = record_child(record, "accuracy"), *mae = record_child(record, "mae_by_kind");
   Record *swapped = record_child(record, "accuracy_swapped");

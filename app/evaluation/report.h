@@ -9,9 +9,10 @@
 #include "app/evaluation/paths.h"
 #include "base/files/record.h"
 
-// STATUS_MEMORY.
+// Table 4's own figures stand beside those of data like the paper's (`is_paper`): elsewhere volumes are of
+// another size, and so are mean errors. STATUS_MEMORY.
 Status app_evaluation_print(const AppEvaluation *evaluation, const char *model, const char *data,
-                            FILE *stream);
+                            bool is_paper, FILE *stream);
 
 // The keys that others script against: accuracy (kind → share), accuracy_mean, mae, mae_small, … ; what could
 // not be measured is null.

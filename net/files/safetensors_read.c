@@ -55,12 +55,12 @@ static bool is_pytorch(const char *bytes, size_t size) {
 
 static NetStatus fail_foreign(const char *path, const char *bytes, size_t size) {
   if (is_pytorch(bytes, size))
-    return net_status_fail(NET_BAD_FILE,
-                           "%s: is a file of PyTorch, and weights are read from safetensors files: in "
-                           "Python, load its state_dict and "
-                           "write it with safetensors.torch.save_file, with the names and the metadata that "
-                           "docs/training.md lists",
-                           path);
+    return net_status_fail(
+        NET_BAD_FILE,
+        "%s: is a file of PyTorch; load it in the module of a Python file, and name that, as in "
+        "mine.py:Net, or write the weights of a network of tetlap's layers as a "
+        "safetensors file by tetlap.write_weights",
+        path);
   return net_status_fail(
       NET_BAD_FILE,
       "%s: is not a safetensors file: that begins with eight bytes that say how long its header "

@@ -11,6 +11,7 @@
 // Of this thread: the process and the library of the call in progress.
 static _Thread_local pid_t caller; // 0: none
 static _Thread_local const char *called;
+static void (*at_end)(int code);
 
 int overlap_foreign_guard_leave(const char *function, int code) {
   if (getpid() != caller) return code;
@@ -20,7 +21,13 @@ int overlap_foreign_guard_leave(const char *function, int code) {
           "error: %s: called %s where the program waits for an answer: a model that fails returns a number "
           "other than 0 and a message (tetlap/model.h)\n",
           called, function);
-  return status_exit_code(STATUS_SOLVER);
+  const int exit_code = status_exit_code(STATUS_SOLVER);
+  if (at_end) at_end(exit_code);
+  return exit_code;
+}
+
+void overlap_foreign_guard_set_end(void (*end)(int code)) {
+  at_end = end;
 }
 
 // Runs in exit(), in the thread that called it.

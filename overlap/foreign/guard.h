@@ -15,4 +15,8 @@ void overlap_foreign_guard_end(void);
 // message.
 int overlap_foreign_guard_leave(const char *function, int code);
 
+// `end` is called with the exit code after the message, and may end the program itself: of several processes
+// only one speaks, and the others are to end too. NULL: nothing is called.
+void overlap_foreign_guard_set_end(void (*end)(int code));
+
 #endif

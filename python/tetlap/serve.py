@@ -128,7 +128,8 @@ class Model:
             raise ModelError(f"{self.name} returned {key} that is no array of numbers: its type is {value.dtype}, expected float64")
         value = value.astype(np.float64, copy=False)
         if value.shape != shape:
-            raise ModelError(f"{self.name} returned {key} of shape {value.shape}, expected {shape}")
+            column = "; take the column out: squeeze(1)" if value.shape == (*shape, 1) else ""
+            raise ModelError(f"{self.name} returned {key} of shape {value.shape}, expected {shape}{column}")
         return value
 
 

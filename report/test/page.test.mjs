@@ -112,6 +112,8 @@ function makePages() {
   run("report", "-q", runs[0], "--surface", "-o", join(out, "one.html"));
   run("run", obstacles, "-q", "-o", join(out, "obstacles"), "-s", "time.end=1", "-s", "output.frames=10");
   run("report", "-q", join(out, "obstacles"), "-o", join(out, "obstacles.html"));
+  cpSync(join(out, "obstacles"), join(out, "again"), { recursive: true });
+  run("report", "-q", join(out, "obstacles"), join(out, "again"), "-o", join(out, "obstacles-two.html"));
   makeSweep();
   const models = makeComparison();
   makeFiles();
@@ -121,7 +123,7 @@ function makePages() {
   writeFileSync(join(out, "verdict", "verdict.json"), JSON.stringify(VERDICTS_MADE));
   run("report", "-q", join(out, "verdict"), "-o", join(out, "verdict.html"));
   run("report", "-q", "--stress", join(out, "stress.json"), "--stress", join(out, "later.json"), "-o", join(out, "stress.html"));
-  return { verdict: `file://${resolve(out, "verdict.html")}`, files: `file://${resolve(out, "files.html")}`, filesTwo: `file://${resolve(out, "files-two.html")}`, models: `file://${resolve(out, "models.html")}`, folder: models, sweep: `file://${resolve(out, "sweep", "sweep.html")}`, obstacles: `file://${resolve(out, "obstacles.html")}`, stress: `file://${resolve(out, "stress.html")}`, two: `file://${resolve(out, "two.html")}`, one: `file://${resolve(out, "one.html")}`, runs };
+  return { obstaclesTwo: `file://${resolve(out, "obstacles-two.html")}`, verdict: `file://${resolve(out, "verdict.html")}`, files: `file://${resolve(out, "files.html")}`, filesTwo: `file://${resolve(out, "files-two.html")}`, models: `file://${resolve(out, "models.html")}`, folder: models, sweep: `file://${resolve(out, "sweep", "sweep.html")}`, obstacles: `file://${resolve(out, "obstacles.html")}`, stress: `file://${resolve(out, "stress.html")}`, two: `file://${resolve(out, "two.html")}`, one: `file://${resolve(out, "one.html")}`, runs };
 }
 
 // Different colours in each canvas, read right after it was drawn: 1 is an empty one.
@@ -281,7 +283,7 @@ const tests = {
       lines: element.querySelectorAll("g[aria-label=line] path").length, dots: element.querySelectorAll(".dot").length,
       points: [...element.querySelectorAll("g[aria-label=line] path")].map((path) => path.getAttribute("d").split(/[ML]/).length - 1),
       finite: plot.series.map(({ values }) => values.filter(Number.isFinite).length) }))`);
-    assert.deepEqual(plots.map(({ id }) => id), ["force", "energy", "error", "step"]);
+    assert.deepEqual(plots.map(({ id }) => id), ["force", "force-1", "energy", "error", "step"]);
     for (const plot of plots) {
       assert.equal(plot.lines, plot.series, plot.id);
       assert.equal(plot.dots, plot.series, plot.id);
@@ -652,6 +654,18 @@ const fileTests = {
   },
 };
 
+async function testForcesTwo(browser, url) {
+  const page = await browser.open(url, { width: 1280, height: 900 });
+  const plots = await page.eval(`tetlap.plots.filter(({ plot }) => plot.id.startsWith("force")).map(({ plot, element }) => ({ title: plot.title, names: plot.series.map(({ label }) => label), hues: [...element.querySelectorAll(".reading line")].map((one) => one.getAttribute("stroke")) }))`);
+  assert.deepEqual(plots.map(({ title }) => title), ["Contact force, cube – ground", "Contact force, cube – slope"]);
+  for (const { names, hues } of plots) {
+    assert.deepEqual(names.slice(0, 2), ["obstacles", "again"]);
+    assert.notEqual(hues[0], hues[1]);
+    assert.deepEqual(hues.slice(0, 2), plots[0].hues.slice(0, 2));
+  }
+  await page.close();
+}
+
 async function testFilesTwo(browser, url) {
   const page = await browser.open(url, { width: 1280, height: 900 });
   const text = await page.eval(`document.querySelector("#plot-error").textContent`);
@@ -814,6 +828,7 @@ try {
   await verdict.close();
   for (const [width, theme] of [[1280, "light"], [400, "dark"]])
     await attempt(`a verdict fits ${width} pixels, ${theme}`, () => shoot(browser, pages.verdict, `verdict-${theme}-${width}`, { width, height: 1000, theme, isMobile: width < 600 }, "0"));
+  await attempt("forces of two runs have a plot for each two bodies and a colour for each run", () => testForcesTwo(browser, pages.obstaclesTwo));
   await attempt("a run that failed looks so", () => testFailed(browser, pages.runs));
   await attempt("a page follows a run from before it begins to its end", () => testLive(browser));
   const models = await browser.open(pages.models, { width: 1280, height: 900 });

@@ -122,9 +122,21 @@ END_TEST
 // Weights that are no safetensors file, by every way to name them.
 START_TEST(a_file_of_pytorch_is_refused_with_what_to_do) {
   ck_assert_refused(0, "printf 'PK\\003\\004 as torch.save writes it' > net.pt", "");
-  ck_assert_refused(65, "$tetlap eval ./net.pt --law scene -n 10", "safetensors.torch.save_file");
+  ck_assert_refused(65, "$tetlap eval ./net.pt --law scene -n 10", "as in mine.py:Net");
   ck_assert_refused(65, "$tetlap run $examples/02_two_blocks.yaml -m ./net.pt -o out", "file of PyTorch");
   ck_assert_int_ne(access("out", F_OK), 0);
+}
+END_TEST
+
+// Mean errors of data with other volumes than the paper's are no better or worse than its own.
+START_TEST(the_papers_figures_stand_beside_data_like_the_papers_alone) {
+  ck_assert_refused(0, "$tetlap eval clip --law paper-test -n 20 | grep -q 'mean |dV| *paper'", "");
+  ck_assert_refused(0, "! $tetlap eval clip --law scene -n 20 | grep -q paper", "");
+  ck_assert_refused(
+      0,
+      "$tetlap datagen -q --law paper-test -n 20 -o law.h5 && $tetlap eval clip law.h5 | grep -q paper:", "");
+  ck_assert_refused(
+      0, "$tetlap datagen -q --law scene -n 20 -o law.h5 && ! $tetlap eval clip law.h5 | grep -q paper:", "");
 }
 END_TEST
 
@@ -153,6 +165,7 @@ int main(void) {
   tcase_add_test(cases, a_capture_of_no_pairs_is_told);
   tcase_add_test(cases, stress_names_the_model_that_is_none);
   tcase_add_test(cases, a_file_of_pytorch_is_refused_with_what_to_do);
+  tcase_add_test(cases, the_papers_figures_stand_beside_data_like_the_papers_alone);
   tcase_add_test(cases, a_seed_that_verdict_json_would_round_is_refused);
   tcase_add_test(cases, models_in_one_word_are_refused);
   return suite_run("refusals", cases, 120);

@@ -87,7 +87,7 @@ static Status add_blocks(AppSource *source, const DatagenPairs *buffer, AppEvalu
 
 // What was found; either part may be absent.
 typedef struct Findings {
-  bool has_evaluation, has_paths;
+  bool has_evaluation, has_paths, is_paper;
   char data[768];
   AppEvaluation evaluation;
   AppEvaluationPaths paths;
@@ -97,7 +97,7 @@ static Status print(const Options *options, const Findings *findings) {
   AppModelName name;
   app_model_names_find_one(options->words[0], name);
   if (findings->has_evaluation)
-    TRY(app_evaluation_print(&findings->evaluation, name, findings->data, stdout));
+    TRY(app_evaluation_print(&findings->evaluation, name, findings->data, findings->is_paper, stdout));
   if (findings->has_paths) app_evaluation_print_paths(&findings->paths, name, stdout);
   return STATUS_OK;
 }
@@ -138,6 +138,7 @@ static Status evaluate_data(const Options *options, const OverlapModel *model, F
   AppSource source;
   Status status = app_dataset_source_open(&source, &options->source, true);
   if (!status) status = evaluate(&source, model, &findings->evaluation);
+  findings->is_paper = !status && app_dataset_source_is_paper(&options->source, &source);
   if (!status) app_dataset_source_describe(&options->source, &source, findings->data, sizeof findings->data);
   app_dataset_source_close(&source);
   return status;

@@ -8,32 +8,20 @@ import { format, h, raise, svg } from "../dom.js";
 import { groupsOf, stripe } from "./coincide.js";
 
 const MARGIN = { left: 52, right: 12, top: 10, bottom: 26 };
-const MAX_FORCES = 5;
+const MAX_FORCES = 5; // of one run, in one plot
+const MAX_FORCE_PLOTS = 3;
 const DASH = "4 3"; // of run B where the hue says what the quantity is
 
 const byRun = (run, theme) => HUES[theme][run.index % HUES.light.length];
 
-// Each plot's series: [{run, label, hue: number | null (the run's), values, times}].
-function forceSeries(runs) {
-  const keys = [...new Set(runs.flatMap((run) => run.forces.map((force) => force.key)))].slice(0, MAX_FORCES);
-  const isOne = keys.length === 1 && runs.length > 1;
-  const series = keys.flatMap((key, hue) =>
-    runs.flatMap((run) => {
-      const force = run.forces.find((one) => one.key === key);
-      return force ? [{ run, label: isOne ? run.label : force.label, hue: isOne ? null : hue, values: force.values, times: run.times }] : [];
-    }),
-  );
-  return [...series, ...peakSeries(runs)];
-}
-
 // What rows a frame would miss: the largest force between any two after any step since the row before. Its maximum is
 // the run's. Left out where every step has its row.
-function peakSeries(runs) {
+function peakSeries(runs, label = "largest since the last row") {
   return runs.flatMap((run) => {
     const values = run.columns.contact_force_peak_N;
     const known = run.forces.length > 0 && values ? run.times.map((_, i) => Math.max(...run.forces.map((force) => force.values[i]))) : [];
     if (!known.some((value, i) => values[i] > 1.001 * value)) return [];
-    return [{ run, label: "largest since the last row", hue: MAX_FORCES, values, times: run.times }];
+    return [{ run, label, hue: MAX_FORCES, values, times: run.times }];
   });
 }
 
@@ -137,14 +125,21 @@ function auditSeries(data, kind) {
   });
 }
 
-// With more than two runs a plot for each two bodies, in which the hue says which run it is.
+// A plot's series: [{run, label, hue: number | null (the run's), values, times}]. Of one run all forces stand in one plot,
+// in which the hue says between whom. Of several there is a plot for each two bodies, in which the hue says which run it is.
 function forcePlots(runs) {
-  const plot = { id: "force", title: "Contact force", unit: "N", series: forceSeries(runs) };
-  if (runs.length <= 2) return [plot];
-  const keys = [...new Set(runs.flatMap((run) => run.forces.map((force) => force.key)))].slice(0, 3);
-  return keys.map((key, k) => {
+  const plot = { id: "force", title: "Contact force", unit: "N" };
+  const seriesOf = (run, { values }, label, hue) => ({ run, label, hue, values, times: run.times });
+  if (runs.length <= 1) {
+    const series = runs.flatMap((run) => run.forces.slice(0, MAX_FORCES).map((force, hue) => seriesOf(run, force, force.label, hue)));
+    return [{ ...plot, series: [...series, ...peakSeries(runs)] }];
+  }
+  const keys = [...new Set(runs.flatMap((run) => run.forces.map((force) => force.key)))];
+  const peaks = isPair(runs) ? peakSeries(runs, keys.length > 1 ? "largest since the last row, of any two" : undefined) : [];
+  return keys.slice(0, MAX_FORCE_PLOTS).map((key, k) => {
     const owners = runs.flatMap((run) => run.forces.filter((force) => force.key === key).map((force) => ({ run, force })));
-    return { ...plot, id: k ? `force-${k}` : "force", title: `Contact force, ${owners[0].force.label}`, series: owners.map(({ run, force }) => ({ run, label: run.label, hue: null, values: force.values, times: run.times })) };
+    const series = owners.map(({ run, force }) => seriesOf(run, force, run.label, null));
+    return { ...plot, id: k ? `force-${k}` : "force", title: `Contact force, ${owners[0].force.label}`, series: k ? series : [...series, ...peaks] };
   });
 }
 

@@ -321,6 +321,20 @@ START_TEST(a_smaller_doubt_hands_more_on_and_errs_less) {
 }
 END_TEST
 
+// A model of a user's whose volumes are negative: they count as 0, and it is told.
+START_TEST(unsound_volumes_are_counted) {
+  DatagenPairs pairs;
+  OverlapModel model;
+  load("scene", "scene=1", 50, &pairs);
+  ck_assert_ok(app_evaluation_model_open(&model, TETLAP_MODEL_8));
+  AppEvaluation found = evaluate(&model, &pairs, 50);
+  ck_assert_int_eq(found.unsound, 50);
+  ck_assert_near(found.volume_error_sum, 1, 1e-12);
+  overlap_model_destroy(&model);
+  datagen_pairs_destroy(&pairs);
+}
+END_TEST
+
 START_TEST(unknown_models_are_named) {
   OverlapModel model;
   ck_assert(app_evaluation_model_open(&model, "clap") != STATUS_OK);
@@ -345,6 +359,7 @@ int main(void) {
   tcase_add_test(test_case, jumps_along_paths_are_found_and_measured);
   tcase_add_test(test_case, shipped_weights_do_not_jump);
   tcase_add_test(test_case, a_smaller_doubt_hands_more_on_and_errs_less);
+  tcase_add_test(test_case, unsound_volumes_are_counted);
   tcase_add_test(test_case, unknown_models_are_named);
   return suite_run("eval", test_case, 30);
 }

@@ -86,6 +86,19 @@ static double differentiate(const double values[4], double h) {
 static const double steps[4] = {1, -1, 2, -2};
 static const double h = 2e-4;
 
+static void check_force(const FemElement *element, const FemMaterial *material, const double x[12],
+                        const double force[12]) {
+  double moved[12], energy[4];
+  for (int r = 0; r < 12; r++) {
+    for (int s = 0; s < 4; s++) {
+      memcpy(moved, x, sizeof moved);
+      moved[r] += steps[s] * h;
+      energy[s] = reference_element_energy(element, material, moved);
+    }
+    ck_assert_near(force[r], -differentiate(energy, h), 1e-8 * fmax(1, 0.1 * fabs(force[r])));
+  }
+}
+
 START_TEST(the_unit_tetrahedron_has_volume_one_sixth_and_unit_gradients) {
   static const double gradients[4][3] = {{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   FemElement element;
@@ -133,19 +146,12 @@ START_TEST(force_is_minus_the_derivative_of_energy) {
   FemMaterial material = make_material(_i);
   Random random = random_seeded(42, 0);
   for (int k = 0; k < SAMPLES; k++) {
-    double rest[12], x[12], moved[12], force[12], energy[4];
+    double rest[12], x[12], force[12];
     FemElement element;
     draw_tet(&random, rest, &element);
     move_by(rest, 0.1, &random, x);
     reference_element_force(&element, &material, x, force);
-    for (int r = 0; r < 12; r++) {
-      for (int s = 0; s < 4; s++) {
-        memcpy(moved, x, sizeof moved);
-        moved[r] += steps[s] * h;
-        energy[s] = reference_element_energy(&element, &material, moved);
-      }
-      ck_assert_near(force[r], -differentiate(energy, h), 1e-8 * fmax(1, 0.1 * fabs(force[r])));
-    }
+    check_force(&element, &material, x, force);
   }
 }
 END_TEST
@@ -180,7 +186,7 @@ START_TEST(inverted_elements_have_finite_values_and_consistent_derivatives) {
   FemMaterial material = make_material(_i);
   Random random = random_seeded(44, 0);
   for (int k = 0; k < SAMPLES; k++) {
-    double x[12], force[12], stiffness[144], energy[4], moved[12];
+    double x[12], force[12], stiffness[144];
     FemElement element;
     fem_element_create(&element, unit_tet);
     move_by(unit_tet, 0.02, &random, x);
@@ -188,14 +194,7 @@ START_TEST(inverted_elements_have_finite_values_and_consistent_derivatives) {
     reference_element_force(&element, &material, x, force);
     reference_element_stiffness(&element, &material, x, stiffness);
     for (int r = 0; r < 144; r++) ck_assert(isfinite(stiffness[r]));
-    for (int r = 0; r < 12; r++) {
-      for (int s = 0; s < 4; s++) {
-        memcpy(moved, x, sizeof moved);
-        moved[r] += steps[s] * h;
-        energy[s] = reference_element_energy(&element, &material, moved);
-      }
-      ck_assert_near(force[r], -differentiate(energy, h), 1e-8 * fmax(1, 0.1 * fabs(force[r])));
-    }
+    check_force(&element, &material, x, force);
   }
 }
 END_TEST

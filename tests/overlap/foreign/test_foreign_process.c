@@ -149,7 +149,8 @@ START_TEST(python_that_is_wrong) {
   setenv("TETLAP_MODEL_SECONDS", "20", 1);
   expect_refused(PYTHON("nothing"), STATUS_INPUT, "has no 'nothing'; it has box");
   expect_refused(PYTHON("NUMBER"), STATUS_INPUT, "NUMBER is int, expected a callable");
-  expect_refused(PYTHON("wrong_shape"), STATUS_INPUT, "volume of shape (1, 1), expected (1,)");
+  expect_refused(PYTHON("wrong_shape"), STATUS_INPUT,
+                 "volume of shape (1, 1), expected (1,); take the column out: squeeze(1)");
   expect_refused(PYTHON("ranged_wrong"), STATUS_INPUT,
                  "the range of ranged_wrong is (0.1, 0.7), expected a text");
   expect_refused(PYTHON("wrong_key"), STATUS_INPUT, "'volumes', which is none of volume");
