@@ -154,10 +154,12 @@ Status contact_near_update(ContactNear *near, const ContactLayout *layout,
                            const ContactCandidates *candidates, double time, const double *positions) {
   double next = longest_approach(layout, candidates, candidates->expected);
   if (near->searches != candidates->searches) near->is_made = false;
-  if (near->is_made && used(near, layout, candidates, time, positions) + next <= near->skin) return STATUS_OK;
+  double skin = fmax(CONTACT_STEPS_AHEAD * next, THINNEST * layout->margin);
+  bool is_thick = near->skin > CONTACT_STEPS_AHEAD * skin;
+  if (near->is_made && !is_thick && used(near, layout, candidates, time, positions) + next <= near->skin)
+    return STATUS_OK;
   near->is_made = false;
   near->searches = candidates->searches;
-  double skin = fmax(CONTACT_STEPS_AHEAD * next, THINNEST * layout->margin);
   if (!(skin < layout->margin) || candidates->list.count == 0) return STATUS_OK;
   near->skin = skin;
   return make(near, layout, &candidates->list, time, positions);

@@ -31,8 +31,8 @@ typedef struct ContactNear {
 Status contact_near_create(ContactNear *near, const ContactLayout *layout);
 void contact_near_destroy(ContactNear *near);
 
-// After contact_candidates_update at these positions: makes the list anew where the candidates are new or the
-// next step may use up the skin.
+// After contact_candidates_update at these positions: makes the list anew where the candidates are new, the
+// next step may use up the skin, or at the speeds of now a much thinner one would do.
 Status contact_near_update(ContactNear *near, const ContactLayout *layout,
                            const ContactCandidates *candidates, double time, const double *positions);
 

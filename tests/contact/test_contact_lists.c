@@ -435,6 +435,35 @@ START_TEST(a_list_lasts_for_the_steps_that_it_is_made_for) {
 }
 END_TEST
 
+// A list for .4 of the margin serves steps of half the length, and is replaced by a shorter one for shorter
+// ones.
+START_TEST(a_list_for_fast_bodies_is_not_kept_for_slow_ones) {
+  Fixture *f = two_blocks(-0.2, 0.1);
+  const ContactLayout *layout = contact_system_layout(f->system);
+  const double step = 0.01, margin = default_margin(f), ways[] = {0.2, 0.105, 0.095, 0.03};
+  const ContactBody *upper = &f->def.bodies[1];
+  ContactCandidates candidates;
+  ContactNear near;
+  int counts[4];
+  bool is_new[4];
+  ck_assert_ok(contact_candidates_create(&candidates, layout));
+  ck_assert_ok(contact_near_create(&near, layout));
+  for (int k = 0; k < 4; k++) {
+    for (int v = upper->vertex_begin; v < upper->vertex_end; v++)
+      f->velocities[3 * v + 2] = ways[k] * margin / step;
+    ck_assert_ok(contact_candidates_update(&candidates, layout, k * step, f->blocks.x, f->velocities, step));
+    ck_assert_ok(contact_near_update(&near, layout, &candidates, k * step, f->blocks.x));
+    is_new[k] = near.reference_time == k * step, counts[k] = near.list.count;
+  }
+  ck_assert(is_new[0] && !is_new[1] && is_new[2] && is_new[3]);
+  ck_assert_int_lt(counts[3], counts[0]);
+  ck_assert_int_gt(counts[3], 0);
+  contact_near_destroy(&near);
+  contact_candidates_destroy(&candidates);
+  destroy(f);
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("contact_lists");
   tcase_add_test(cases, an_old_list_gives_what_a_new_one_gives);
@@ -451,5 +480,6 @@ int main(void) {
   tcase_add_test(cases, what_is_coupled_is_not_visited_again);
   tcase_add_test(cases, a_visitor_that_fails_ends_the_visit);
   tcase_add_test(cases, a_list_lasts_for_the_steps_that_it_is_made_for);
+  tcase_add_test(cases, a_list_for_fast_bodies_is_not_kept_for_slow_ones);
   return suite_run("contact_lists", cases, 60);
 }
