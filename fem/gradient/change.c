@@ -54,6 +54,7 @@ static void clear(FemChange *change, const FemTangent *tangent) {
   memset(change->rates, 0, (size_t)tangent->interface_count * sizeof(double));
   memset(change->slips, 0, (size_t)tangent->interface_count * sizeof(double));
   memset(change->rests, 0, bytes);
+  memset(change->masses, 0, bytes / 3);
   fem_shape_destroy(&change->shape);
   change->party = -1;
   change->elastic = change->gravity = 0;
@@ -214,11 +215,12 @@ int fem_change_party(const FemModel *model, int obstacle) {
   return before + (is_mesh ? model->scene->body_count : model->body_count);
 }
 
-// A step of what rests, as a motion has turned it.
-static Vec3 turned_step(const FemConstraintDef *def, double time, const double step[3]) {
-  double from[3], to[3], velocity[3];
-  fem_drive_point(def, time, (const double[3]){0, 0, 0}, from, velocity);
-  fem_drive_point(def, time, step, to, velocity);
+// A step of what rests, as a motion has turned it, and the velocity that it has there.
+static Vec3 turned_step(const FemConstraintDef *def, double time, const double step[3], Vec3 *speed) {
+  double from[3], to[3], slow[3], fast[3];
+  fem_drive_point(def, time, (const double[3]){0, 0, 0}, from, slow);
+  fem_drive_point(def, time, step, to, fast);
+  *speed = vec3_sub(vec3_at(fast), vec3_at(slow));
   return vec3_sub(vec3_at(to), vec3_at(from));
 }
 
@@ -229,9 +231,13 @@ static void carry(FemChange *change, const FemTangent *tangent) {
     const FemModelDriver *driver = &model->drivers[d];
     for (int i = 0; i < driver->dof_count; i++) {
       int dof = driver->dofs[i];
-      double step[3];
-      vec3_store(step, turned_step(driver->def, tangent->state->time, change->rests + (dof - dof % 3)));
+      double step[3], faster[3];
+      Vec3 speed;
+      vec3_store(step,
+                 turned_step(driver->def, tangent->state->time, change->rests + (dof - dof % 3), &speed));
+      vec3_store(faster, speed);
       change->motion[dof] = step[dof % 3];
+      change->speed[dof] = faster[dof % 3];
     }
   }
 }
@@ -239,8 +245,7 @@ static void carry(FemChange *change, const FemTangent *tangent) {
 static void place_body(FemChange *change, const FemTangent *tangent, const FemParameter *parameter) {
   const FemModel *model = tangent->system->model;
   const FemModelBody *body = &model->bodies[parameter->body];
-  for (int a = body->vertex_begin; a < body->vertex_end; a++)
-    change->rests[3 * (size_t)a + (size_t)parameter->component] = 1;
+  fem_shape_rest(model, parameter, change->rests);
   carry(change, tangent);
   double unseen = 1 - fem_gravity_share(model, tangent->state->time);
   for (int a = body->vertex_begin; a < body->vertex_end && model->scene->has_gravity; a++)
@@ -256,8 +261,9 @@ static void place(FemChange *change, const FemTangent *tangent, const FemParamet
   double step[3] = {0, 0, 0};
   step[parameter->component] = 1;
   change->party = fem_change_party(model, parameter->obstacle);
-  vec3_store(change->shift,
-             turned_step(&model->scene->obstacles[parameter->obstacle].motion, tangent->state->time, step));
+  const FemConstraintDef *motion = &model->scene->obstacles[parameter->obstacle].motion;
+  Vec3 speed;
+  vec3_store(change->shift, turned_step(motion, tangent->state->time, step, &speed));
 }
 
 static Status reshape(FemChange *change, const FemTangent *tangent, const FemParameter *parameter) {
@@ -266,6 +272,7 @@ static Status reshape(FemChange *change, const FemTangent *tangent, const FemPar
   TRY(fem_shape_derive(&change->shape, tangent, change->rests));
   size_t values = values_of(tangent);
   for (size_t i = 0; i < values; i++) change->force[i] += change->shape.force[i];
+  memcpy(change->masses, change->shape.masses, values / 3 * sizeof(double));
   change->elastic += change->shape.elastic;
   change->gravity += change->shape.gravity;
   return STATUS_OK;

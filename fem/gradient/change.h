@@ -19,7 +19,7 @@ typedef struct FemChange {
   double *rates;             // ∂ ln κ/∂p of each interface                           (interface_count)
   double *slips;             // ∂μ/∂p of each interface                               (interface_count)
   FemVariedLaw law;          // contact by the derivative of a pressure law; zeroed: by none
-  double *masses;            // ∂m/∂p of a density; of other parameters not set       (vertex_count)
+  double *masses;            // ∂m/∂p                                                 (vertex_count)
   int party;                 // the obstacle that moves; −1: none
   double shift[3], spin[3];  // by v(x) = shift + spin × x
   double *rests;             // ∂X/∂p of rest positions                               (vertex_count, 3)

@@ -70,6 +70,11 @@ bool fem_parameter_is_of_shape(const FemParameter *parameter) {
   return kinds[parameter->kind].owner == OF_SHAPE;
 }
 
+bool fem_parameter_moves_rest(const FemParameter *parameter) {
+  bool is_of_place = parameter->kind == FEM_PARAMETER_PLACE && parameter->obstacle < 0;
+  return is_of_place || fem_parameter_is_of_shape(parameter);
+}
+
 static const FemContactDef *contact_of(const FemModel *model) {
   return &model->scene->contact;
 }

@@ -56,6 +56,7 @@ bool fem_parameter_is_of_material(const FemParameter *parameter); // acts by for
 bool fem_parameter_is_of_yielding(const FemParameter *parameter); // of its part's plasticity
 bool fem_parameter_is_of_motion(const FemParameter *parameter);   // of a prescribed motion
 bool fem_parameter_is_of_shape(const FemParameter *parameter);    // moves a body's rest positions
+bool fem_parameter_moves_rest(const FemParameter *parameter);     // of its shape, or of its place
 bool fem_parameter_is_of_law(const FemParameter *parameter);      // of a pressure law of contact
 
 // STATUS_INPUT: the scene does not give it, or no derivative is known; the message says why.

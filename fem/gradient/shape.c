@@ -22,7 +22,11 @@ static const double LEAST_KINK = 1e-4;
 
 static Vec3 rate_of(const FemPlacement *placement, const FemParameter *parameter, Vec3 X) {
   Vec3 arm = vec3_sub(X, vec3_at(placement->translate)), axis = vec3_at(placement->axis);
-  double axes[3][3];
+  double axes[3][3], unit[3] = {0, 0, 0};
+  if (parameter->kind == FEM_PARAMETER_PLACE) {
+    unit[parameter->component] = 1;
+    return vec3_at(unit);
+  }
   if (parameter->kind == FEM_PARAMETER_ROTATE)
     return vec3_scale(M_PI / 180 / vec3_length(axis), vec3_cross(axis, arm));
   if (parameter->component < 0) return vec3_scale(1 / placement->scale[0], arm);
@@ -32,6 +36,8 @@ static Vec3 rate_of(const FemPlacement *placement, const FemParameter *parameter
 }
 
 void fem_shape_rest(const FemModel *model, const FemParameter *parameter, double *rests) {
+  memset(rests, 0, 3 * (size_t)model->vertex_count * sizeof *rests);
+  if (!fem_parameter_moves_rest(parameter)) return;
   const FemModelBody *body = &model->bodies[parameter->body];
   const FemPlacement *placement = &model->scene->bodies[parameter->body].placement;
   if (parameter->kind == FEM_PARAMETER_REST) {
@@ -149,7 +155,7 @@ static Status add_effect(const FemModel *model, const FemEffectOps *ops, const F
   return status;
 }
 
-// Of elements, weight and loads.
+// Of elements, weight, loads and damping.
 static Status add_bulk(FemShape *shape, const FemModel *model, const FemState *state, double weight,
                        double *scratch) {
   size_t count = 3 * (size_t)model->vertex_count;
@@ -159,7 +165,9 @@ static Status add_bulk(FemShape *shape, const FemModel *model, const FemState *s
   TRY(add_effect(model, &fem_effect_volume, state, scratch, &energy));
   TRY(add_effect(model, &fem_effect_gravity, state, scratch, &energy));
   TRY(add_effect(model, &fem_effect_loads, state, scratch, NULL));
+  TRY(add_effect(model, &fem_effect_damping, state, scratch, NULL));
   for (size_t i = 0; i < count; i++) shape->force[i] += weight * scratch[i];
+  for (size_t a = 0; a < count / 3; a++) shape->masses[a] += weight * model->mass[a];
   shape->elastic += weight * energy.elastic;
   shape->gravity += weight * energy.gravity;
   return STATUS_OK;
@@ -216,7 +224,11 @@ static Status judge_kinks(const FemTangent *tangent, const double *sides, size_t
   return STATUS_OK;
 }
 
+// Bodies that are apart do not press, wherever they rest.
 static Status derive_contact(FemShape *shape, const FemTangent *tangent, const double *rests, double strain) {
+  const ContactEvaluation *evaluation;
+  TRY(fem_effect_contact_evaluate(tangent->system, tangent->state, &evaluation));
+  if (evaluation->pair_count == 0) return STATUS_OK;
   size_t values = 3 * (size_t)tangent->system->model->vertex_count, count = (size_t)tangent->interface_count;
   double step = STRAIN_OF_CONTACT / strain;
   shape->contact = memory_zeroed(values * count, sizeof *shape->contact);
@@ -243,7 +255,9 @@ static Status derive_bulk(FemShape *shape, const FemTangent *tangent, const doub
   double step = STRAIN / strain;
   double *scratch = memory_zeroed(values, sizeof *scratch);
   shape->force = memory_zeroed(values, sizeof *shape->force);
-  Status status = scratch && shape->force ? STATUS_OK : status_no_memory("forces of another shape");
+  shape->masses = memory_zeroed(values / 3, sizeof *shape->masses);
+  bool fits = scratch && shape->force && shape->masses;
+  Status status = fits ? STATUS_OK : status_no_memory("forces of another shape");
   for (int k = 0; k < FEM_DIFFERENCE_POINTS && !status; k++) {
     FemModel model;
     status = create_model(&model, tangent->system->model, rests, fem_difference[k].place * step);
@@ -260,8 +274,22 @@ Status fem_shape_derive(FemShape *shape, const FemTangent *tangent, const double
   return tangent->contact ? derive_contact(shape, tangent, rests, strain) : STATUS_OK;
 }
 
+Status fem_shape_add_masses(const FemModel *model, const double *rests, double *masses) {
+  Status status = STATUS_OK;
+  double step = STRAIN / strain_of(model, rests);
+  for (int k = 0; k < FEM_DIFFERENCE_POINTS && !status; k++) {
+    FemModel other;
+    status = create_model(&other, model, rests, fem_difference[k].place * step);
+    for (int a = 0; a < model->vertex_count && !status; a++)
+      masses[a] += fem_difference[k].weight / step * other.mass[a];
+    destroy_model(&other);
+  }
+  return status;
+}
+
 void fem_shape_destroy(FemShape *shape) {
   memory_free(shape->force);
+  memory_free(shape->masses);
   memory_free(shape->contact);
   memory_free(shape->energies);
   *shape = (FemShape){0};

@@ -12,17 +12,21 @@
 #include "fem/gradient/tangent.h"
 
 typedef struct FemShape {
-  double *force;   // ∂f/∂p without contact, owned                        (vertex_count, 3)
+  double *force;  // ∂f/∂p without contact, owned                        (vertex_count, 3)
+  double *masses; // ∂m/∂p, owned                                        (vertex_count)
   double *contact; // ∂f/∂p of each interface, owned; NULL: no contact    (interface_count, vertex_count, 3)
   double *energies;        // ∂/∂p of its energy, owned; NULL: no contact         (interface_count)
   double elastic, gravity; // ∂/∂p of these energies
 } FemShape;
 
-// ∂X/∂p of a parameter (fem_parameter_is_of_shape) into zeroed `rests` (vertex_count, 3).
+// ∂X/∂p of a body's place or of a parameter of its shape (fem_parameter_moves_rest), of others 0, into
+// `rests` (vertex_count, 3).
 void fem_shape_rest(const FemModel *model, const FemParameter *parameter, double *rests);
 // Fills a zeroed one, at the tangent's state. STATUS_INPUT: contact has a kink there. Destroy it also after a
 // failure.
 Status fem_shape_derive(FemShape *shape, const FemTangent *tangent, const double *rests);
 void fem_shape_destroy(FemShape *shape); // also of a zeroed one
+// Adds ∂m/∂p of all vertices (vertex_count).
+Status fem_shape_add_masses(const FemModel *model, const double *rests, double *masses);
 
 #endif

@@ -26,11 +26,10 @@ static Status check_released(const FemModel *model) {
 static Status check_motion(const FemModel *model, const FemGradientDef *def) {
   TRY(check_viscosity(model));
   TRY(check_released(model));
-  for (int p = 0; p < def->parameter_count; p++) {
-    const FemParameter *parameter = &def->parameters[p];
-    if (parameter->kind == FEM_PARAMETER_PLACE && parameter->obstacle < 0)
-      return status_fail(STATUS_INPUT, "the place of a body is a parameter of static scenes alone");
-  }
+  for (int p = 0; p < def->parameter_count; p++)
+    if (model->start && fem_parameter_moves_rest(&def->parameters[p]))
+      return status_fail(STATUS_INPUT, "start: a run that goes on from another has no derivative by a body's "
+                                       "place or shape");
   return STATUS_OK;
 }
 

@@ -11,11 +11,11 @@
 
 // ---- What a step gives to the derivatives.
 
-// −∂M/∂p v̇ of a density: what the vertices resist with.
-static void resist(const FemSweep *sweep, const FemParameter *parameter, FemChange *change) {
+// −∂M/∂p v̇ of a density or a shape: what the vertices resist with.
+static void resist(const FemSweep *sweep, FemChange *change) {
   const FemReplay *replay = &sweep->replay;
   const FemModel *model = replay->system.model;
-  if (parameter->kind != FEM_PARAMETER_DENSITY || model->scene->is_static || sweep->step == 0) return;
+  if (model->scene->is_static || sweep->step == 0) return;
   int k = sweep->step;
   FemReplayFormula formula = fem_replay_formula(replay, k);
   size_t n = (size_t)replay->n;
@@ -45,7 +45,7 @@ static Status add_step(FemSweep *sweep, int p, FemGradient *gradient) {
   FemChange *change = &sweep->change;
   const double *factors = sweep->factors;
   TRY(fem_change_find(change, &sweep->varied, &sweep->tangent, &def->parameters[p], def->follows_choice));
-  resist(sweep, &def->parameters[p], change);
+  resist(sweep, change);
   for (int g = 0; g < def->goal_count; g++) {
     FemSweepGoal *goal = &sweep->goals[g];
     double sum = 0;
@@ -169,33 +169,24 @@ static Status go_back_to(FemSweep *sweep, int k, FemGradient *gradient) {
 
 // ---- Where the run begins.
 
-// By a body's place: friction looks at where it was.
-static void add_place(const FemSweep *sweep, int p, FemGradient *gradient) {
-  const FemGradientDef *def = sweep->def;
-  const FemReplay *replay = &sweep->replay;
-  const FemParameter *parameter = &def->parameters[p];
-  if (parameter->kind != FEM_PARAMETER_PLACE || parameter->obstacle >= 0 || !fem_sweep_has_friction(sweep))
-    return;
-  const FemModelBody *body = &replay->system.model->bodies[parameter->body];
-  for (int g = 0; g < def->goal_count; g++)
-    for (int i = 0; i < replay->n; i++) {
-      int dof = replay->system.numbering.dof_of_unknown[i];
-      bool is_its = dof / 3 >= body->vertex_begin && dof / 3 < body->vertex_end;
-      if (is_its && dof % 3 == parameter->component)
-        gradient->derivatives[g * def->parameter_count + p] += sweep->goals[g].places[dof];
-    }
-}
-
-// By the velocities that bodies start with: s_0.
+// By the positions and the velocities that bodies start with: α's sum and friction's look back, and s_0.
 static Status add_start(FemSweep *sweep, int p, FemGradient *gradient) {
   const FemGradientDef *def = sweep->def;
   const FemReplay *replay = &sweep->replay;
-  TRY(fem_start_find(replay->system.model, &def->parameters[p], sweep->weight));
+  const FemModel *model = replay->system.model;
+  double *places = sweep->lambda, *rates = sweep->weight;
+  fem_shape_rest(model, &def->parameters[p], places);
+  TRY(fem_start_find(model, &def->parameters[p], places, rates));
   for (int g = 0; g < def->goal_count; g++)
-    for (int i = 0; i < replay->n; i++)
+    for (int i = 0; i < replay->n; i++) {
+      const FemSweepGoal *goal = &sweep->goals[g];
+      int dof = replay->system.numbering.dof_of_unknown[i];
+      double slope = fem_sweep_carried(sweep, goal->alpha, 0, i);
+      if (fem_sweep_has_friction(sweep)) slope += goal->places[dof];
       gradient->derivatives[g * def->parameter_count + p] +=
-          sweep->weight[replay->system.numbering.dof_of_unknown[i]] * fem_replay_mass(replay, i) *
-          fem_sweep_carried(sweep, sweep->goals[g].beta, 0, i);
+          places[dof] * slope +
+          rates[dof] * fem_replay_mass(replay, i) * fem_sweep_carried(sweep, goal->beta, 0, i);
+    }
   return STATUS_OK;
 }
 
@@ -209,10 +200,7 @@ static Status replay_and_return(FemSweep *sweep, FemGradient *gradient) {
   for (int k = replay->steps->count - 1; k >= first; k--)
     TRY(fem_replay_end(replay, k, go_back_to(sweep, k, gradient)));
   gradient->replay_s = replay->spent_s;
-  for (int p = 0; p < sweep->def->parameter_count; p++) {
-    add_place(sweep, p, gradient);
-    TRY(add_start(sweep, p, gradient));
-  }
+  for (int p = 0; p < sweep->def->parameter_count; p++) TRY(add_start(sweep, p, gradient));
   return STATUS_OK;
 }
 

@@ -119,7 +119,6 @@ START_TEST(motions_without_a_gradient_are_refused_by_name) {
   refuse("contact={stiffness: 1e7, friction: 0.1, law: {power: {pressure: 1e5, depth: 0.01, exponent: 1.5}}}",
          young, "contact.law");
   refuse("bodies.lower.driven[0].release=0.01", young, "released");
-  refuse("time.end=0.06", "bodies.upper.place.translate[0]", "static scenes alone");
   refuse("time.end=0.06", "bodies.upper.material.damping", "body 'upper' has no such constant of its own");
   refuse("effects.damping=1e-3", "bodies.upper.material.damping", "give it a value");
   refuse("time.end=0.06", "effects.damping", "effects.damping is not given or 0");
