@@ -269,6 +269,7 @@ static void place(FemChange *change, const FemTangent *tangent, const FemParamet
 static Status reshape(FemChange *change, const FemTangent *tangent, const FemParameter *parameter) {
   fem_shape_rest(tangent->system->model, parameter, change->rests);
   carry(change, tangent);
+  if (!(tangent->state->time > 0)) return STATUS_OK; // where a path begins, at rest
   TRY(fem_shape_derive(&change->shape, tangent, change->rests));
   size_t values = values_of(tangent);
   for (size_t i = 0; i < values; i++) change->force[i] += change->shape.force[i];

@@ -328,10 +328,11 @@ static Status check_shapes(const FemModel *model, const FemGradientDef *def) {
     is_asked = is_asked || fem_parameter_is_of_shape(&def->parameters[p]);
   for (int b = 0; b < scene->body_count; b++) meets_itself = meets_itself || scene->bodies[b].self_contact;
   if (!is_asked) return STATUS_OK;
-  if (fem_gradient_has_friction(model) || fem_gradient_yields(model) || fem_gradient_has_following(model))
-    return status_fail(STATUS_INPUT,
-                       "scale, rotation and rest positions of a body are parameters of scenes without "
-                       "friction, plasticity and pressures that follow their surface (`follows: nothing`)");
+  if (fem_gradient_yields(model))
+    return status_fail(STATUS_INPUT, "with plasticity there is no derivative by a body's shape");
+  if (fem_gradient_has_friction(model) && !(scene->contact.stiffness > 0))
+    return status_fail(STATUS_INPUT, "with friction there is no derivative by a body's shape where contact's "
+                                     "stiffness is chosen: give contact.stiffness its value");
   if (meets_itself || model->start)
     return status_fail(STATUS_INPUT, "by a body's shape there is no derivative %s",
                        meets_itself ? "with self_contact" : "of a run that goes on from another");

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "fem/effect/contact/contact.h"
+#include "fem/effect/contact/stick.h"
 #include "fem/gradient/difference.h"
 #include "fem/mesh/mesh.h"
 #include "fem/model/build.h"
@@ -105,7 +106,9 @@ static Status share_loads(FemModel *model, const FemModel *of) {
   Status status = tets && nodes ? STATUS_OK : status_no_memory("loads of another shape");
   for (model->load_count = 0; model->load_count < of->load_count && !status; model->load_count++) {
     const FemLoad *load = &of->loads[model->load_count];
-    if (load->def->kind == FEM_LOAD_EXTERNAL) continue; // zeroed: what is set from outside does not change
+    bool follows = load->triangle_count + load->face_count > 0;
+    model->loads[model->load_count].def = load->def;
+    if (follows || load->def->kind == FEM_LOAD_EXTERNAL) continue; // at fixed positions they do not change
     const FemModelBody *body = body_of(model, load);
     FemMesh mesh = mesh_of(model, body, tets, nodes);
     status = fem_load_create_like(&model->loads[model->load_count], load, &mesh, body->vertex_begin);
@@ -193,26 +196,82 @@ static Status sum_contact(const FemTangent *tangent, void *effect, double *force
   return STATUS_OK;
 }
 
-static Status evaluate_contact(const FemTangent *tangent, const double *rests, double step, double *forces,
-                               double *energies) {
-  FemModel model;
+// One side of a difference: what acts between bodies of another shape.
+typedef struct Side {
+  double *forces;   // of each interface, with friction                (interface_count, 3 vertex_count)
+  double *pressing; // the same without friction
+  double *energies; // (interface_count)
+  FemEffectHistory history; // that friction leaves
+} Side;
+
+static void destroy_side(Side *side) {
+  memory_free(side->forces);
+  memory_free(side->pressing);
+  memory_free(side->energies);
+  fem_effect_history_destroy(&side->history);
+}
+
+static Status create_side(Side *side, const FemTangent *tangent) {
+  size_t count = (size_t)tangent->interface_count,
+         values = 3 * (size_t)tangent->system->model->vertex_count * count;
+  side->forces = memory_zeroed(values, sizeof *side->forces);
+  side->pressing = memory_zeroed(values, sizeof *side->pressing);
+  side->energies = memory_zeroed(count, sizeof *side->energies);
+  bool fits = side->forces && side->pressing && side->energies;
+  return fits ? STATUS_OK : status_no_memory("contact of another shape");
+}
+
+// Friction of bodies of another shape that remember the same.
+static Status rub(const FemTangent *tangent, const FemSystem *system, Side *side) {
+  const FemState *state = tangent->state;
+  void *stick = fem_system_effect(system, &fem_effect_stick);
+  size_t values = 3 * (size_t)tangent->system->model->vertex_count;
+  const ContactStick *law;
+  TRY(fem_effect_stick_evaluate(stick, state, &law));
+  for (int i = 0; i < tangent->interface_count; i++)
+    contact_stick_add_force_of(law, i, side->forces + values * (size_t)i);
+  return fem_effect_stick.advance(stick, state, &side->history);
+}
+
+static Status evaluate_between(const FemTangent *tangent, const FemModel *model, Side *side) {
   void *effect = NULL;
-  Status status = create_model(&model, tangent->system->model, rests, step);
-  if (!status) status = fem_effect_contact.create(&effect, &model);
-  if (!status) status = sum_contact(tangent, effect, forces, energies);
-  if (effect) fem_effect_contact.destroy(effect);
+  FemSystem system = {0};
+  Status status;
+  if (tangent->stick) {
+    status = fem_system_create(&system, model);
+    if (!status) effect = fem_system_effect(&system, &fem_effect_contact);
+  } else {
+    status = fem_effect_contact.create(&effect, model);
+  }
+  if (!status) status = sum_contact(tangent, effect, side->pressing, side->energies);
+  size_t all = 3 * (size_t)model->vertex_count * (size_t)tangent->interface_count;
+  memcpy(side->forces, side->pressing, all * sizeof *side->forces);
+  if (!status && tangent->stick) status = rub(tangent, &system, side);
+  if (tangent->stick)
+    fem_system_destroy(&system);
+  else if (effect)
+    fem_effect_contact.destroy(effect);
+  return status;
+}
+
+static Status evaluate_contact(const FemTangent *tangent, const double *rests, double step, Side *side) {
+  FemModel model;
+  Status status = create_side(side, tangent);
+  if (status) return status;
+  status = create_model(&model, tangent->system->model, rests, step);
+  if (!status) status = evaluate_between(tangent, &model, side);
   destroy_model(&model);
   return status;
 }
 
-// `sides`: forces behind, there, ahead (3, interface_count, values).
-static Status judge_kinks(const FemTangent *tangent, const double *sides, size_t values) {
-  size_t all = values * (size_t)tangent->interface_count;
+// `sides`: behind, there, ahead.
+static Status judge_kinks(const FemTangent *tangent, const Side sides[3], size_t values) {
+  const double *behind = sides[0].pressing, *there = sides[1].pressing, *ahead = sides[2].pressing;
   for (int i = 0; i < tangent->interface_count; i++) {
     double largest = 0, kink = 0;
     for (size_t k = values * (size_t)i; k < values * (size_t)(i + 1); k++) {
-      largest = fmax(largest, fabs(sides[all + k]));
-      kink = fmax(kink, fabs(sides[k] - 2 * sides[all + k] + sides[2 * all + k]) / 2);
+      largest = fmax(largest, fabs(there[k]));
+      kink = fmax(kink, fabs(behind[k] - 2 * there[k] + ahead[k]) / 2);
     }
     if (!(kink <= LEAST_KINK * STRAIN_OF_CONTACT * largest))
       return status_fail(
@@ -224,6 +283,32 @@ static Status judge_kinks(const FemTangent *tangent, const double *sides, size_t
   return STATUS_OK;
 }
 
+// √(2E) S/|S|
+static Vec3 stretch_of(const ContactStickEntry *entry) {
+  Vec3 stretch = vec3_at(entry->stretch);
+  double length = vec3_length(stretch);
+  return length > 0 ? vec3_scale(sqrt(2 * entry->energy) / length, stretch) : (Vec3){0, 0, 0};
+}
+
+// The entries are the same on both sides, but for vertices that are just about to touch or to leave.
+static Status derive_history(FemShape *shape, const FemTangent *tangent, const Side sides[3], double step) {
+  const ContactStickHistory there = fem_effect_stick_history(tangent->stick, &sides[1].history);
+  shape->entry_count = there.entry_count;
+  shape->stretches = memory_zeroed((size_t)there.entry_count, sizeof *shape->stretches);
+  if (!shape->stretches) return status_no_memory("friction of another shape");
+  for (int side = 0; side < 3; side += 2) {
+    const ContactStickHistory history = fem_effect_stick_history(tangent->stick, &sides[side].history);
+    for (int e = 0; e < there.entry_count; e++) {
+      const ContactStickEntry *own = &there.entries[e],
+                              *entry =
+                                  contact_stick_history_find(&history, (int)own->interface, (int)own->vertex);
+      Vec3 change = vec3_sub(entry ? stretch_of(entry) : (Vec3){0, 0, 0}, stretch_of(own));
+      vec3_accumulate(shape->stretches[e], vec3_scale((side - 1) / (2 * step), change));
+    }
+  }
+  return STATUS_OK;
+}
+
 // Bodies that are apart do not press, wherever they rest.
 static Status derive_contact(FemShape *shape, const FemTangent *tangent, const double *rests, double strain) {
   const ContactEvaluation *evaluation;
@@ -231,22 +316,19 @@ static Status derive_contact(FemShape *shape, const FemTangent *tangent, const d
   if (evaluation->pair_count == 0) return STATUS_OK;
   size_t values = 3 * (size_t)tangent->system->model->vertex_count, count = (size_t)tangent->interface_count;
   double step = STRAIN_OF_CONTACT / strain;
+  Side sides[3] = {{0}};
   shape->contact = memory_zeroed(values * count, sizeof *shape->contact);
   shape->energies = memory_zeroed(count, sizeof *shape->energies);
-  double *sides = memory_zeroed(3 * values * count, sizeof *sides);
-  double *energies = memory_zeroed(3 * count, sizeof *energies);
-  bool fits = shape->contact && shape->energies && sides && energies;
+  bool fits = shape->contact && shape->energies;
   Status status = fits ? STATUS_OK : status_no_memory("contact of another shape");
-  for (size_t k = 0; k < 3 && !status; k++)
-    status = evaluate_contact(tangent, rests, ((double)k - 1) * step, sides + k * values * count,
-                              energies + k * count);
+  for (int k = 0; k < 3 && !status; k++) status = evaluate_contact(tangent, rests, (k - 1) * step, &sides[k]);
   if (!status) status = judge_kinks(tangent, sides, values);
   for (size_t i = 0; i < values * count && !status; i++)
-    shape->contact[i] = (sides[2 * values * count + i] - sides[i]) / (2 * step);
+    shape->contact[i] = (sides[2].forces[i] - sides[0].forces[i]) / (2 * step);
   for (size_t i = 0; i < count && !status; i++)
-    shape->energies[i] = (energies[2 * count + i] - energies[i]) / (2 * step);
-  memory_free(energies);
-  memory_free(sides);
+    shape->energies[i] = (sides[2].energies[i] - sides[0].energies[i]) / (2 * step);
+  if (!status && tangent->stick) status = derive_history(shape, tangent, sides, step);
+  for (int k = 0; k < 3; k++) destroy_side(&sides[k]);
   return status;
 }
 
@@ -292,5 +374,6 @@ void fem_shape_destroy(FemShape *shape) {
   memory_free(shape->masses);
   memory_free(shape->contact);
   memory_free(shape->energies);
+  memory_free(shape->stretches);
   *shape = (FemShape){0};
 }

@@ -15,7 +15,10 @@ typedef struct FemShape {
   double *force;  // ∂f/∂p without contact, owned                        (vertex_count, 3)
   double *masses; // ∂m/∂p, owned                                        (vertex_count)
   double *contact; // ∂f/∂p of each interface, owned; NULL: no contact    (interface_count, vertex_count, 3)
-  double *energies;        // ∂/∂p of its energy, owned; NULL: no contact         (interface_count)
+  double *energies;       // ∂/∂p of its energy, owned; NULL: no contact         (interface_count)
+  double (*stretches)[3]; // ∂q/∂p of the entries of the history that friction leaves
+                          // (contact/friction/stick_pull.h), owned; NULL: no friction   (entry_count)
+  int entry_count;
   double elastic, gravity; // ∂/∂p of these energies
 } FemShape;
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/vec3.h"
 #include "fem/gradient/path/check.h"
 #include "fem/gradient/path/start.h"
 #include "fem/gradient/path/sweep.h"
@@ -27,10 +28,13 @@ static void resist(const FemSweep *sweep, FemChange *change) {
   }
 }
 
-// By constants of friction, and by the moves of what has no coordinates.
+// By constants of friction, by shapes through what it remembers, and by the moves of what has no coordinates.
 static double change_friction(const FemSweep *sweep, const FemChange *change, const FemSweepGoal *goal) {
   const FemFriction *friction = &goal->friction;
+  bool is_looked_back_at = sweep->step > 0 && !fem_sweep_is_last(sweep);
   double sum = 0;
+  for (int e = 0; e < change->shape.entry_count && is_looked_back_at; e++)
+    sum += vec3_dot(vec3_at(goal->histories[e]), vec3_at(change->shape.stretches[e]));
   for (int i = 0; i < friction->interface_count && fem_sweep_has_friction(sweep); i++) {
     sum += change->rates[i] * friction->stiffness[i] + change->slips[i] * friction->slip[i];
     if (!fem_change_moves(change, &sweep->tangent, i)) continue;

@@ -31,7 +31,7 @@ static Status find_shift(const FemModel *model, const FemParameter *parameter, c
 // v = ω × (x − c) as x and c move.
 static Status turn(const FemModel *model, const FemParameter *parameter, const double *rests, double *rates) {
   const FemModelBody *body = &model->bodies[parameter->body];
-  Vec3 spin = vec3_at(model->scene->bodies[parameter->body].spin), shift;
+  Vec3 spin = vec3_at(model->scene->bodies[parameter->body].spin), shift = {0, 0, 0};
   if (spin.x == 0 && spin.y == 0 && spin.z == 0) return STATUS_OK;
   TRY(find_shift(model, parameter, rests, &shift));
   for (int a = body->vertex_begin; a < body->vertex_end; a++)

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Derivatives by the shape of bodies with friction and following pressures against central differences of
+// replays with the same steps.
+#include "replays.h"
+
+#define UPPER "bodies.upper.place."
+#define LOWER "bodies.lower.place."
+
+START_TEST(rubbed_blocks_agree_by_scale_with_differences_of_replays) {
+  const Asked asked = {.scene = "gradient_rub",
+                       .setting = "time.end=1",
+                       .step = 1e-6,
+                       .least_steps = 7,
+                       .least_switches = 20,
+                       .of = {"displacement:lower:x", "probe:top:x", "force:upper:lower:x", "patch:top:x",
+                              "reaction:upper:driven[0]:y", "energy", "force:upper:lower:x@0.6"},
+                       .by = {UPPER "scale", LOWER "scale"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
+START_TEST(a_slab_between_obstacles_agrees_by_scale_with_differences_of_replays) {
+  const Asked asked = {
+      .scene = "gradient_drag",
+      .setting = "time.end=1",
+      .step = 1e-6,
+      .least_steps = 6,
+      .least_switches = 20,
+      .of = {"displacement:slab:y", "force:slab:block:x", "moment:slab:block:z", "reaction:slab:fixed[0]:y"},
+      .by = {"bodies.slab.place.scale"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
+START_TEST(a_thrown_block_that_sticks_and_slips_agrees_by_scale_with_differences_of_replays) {
+  const Asked asked = {.scene = "gradient_slide",
+                       .setting = "time.end=0.02",
+                       .step = 1e-6,
+                       .least_switches = 1,
+                       .tolerance = 1e-5, // pairs that begin to overlap within a difference
+                       .of = {"displacement:upper:x", "position:upper:3:y", "force:upper:lower:x"},
+                       .by = {UPPER "scale", UPPER "translate[0]"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
+START_TEST(bodies_under_following_pressures_agree_by_scale_with_differences_of_replays) {
+  const Asked asked = {
+      .scene = "gradient_inflate",
+      .setting = "time.end=1",
+      .least_steps = 4,
+      .of = {"displacement:block:z", "displacement:plate:z", "reaction:block:fixed[0]:z", "energy"},
+      .by = {"bodies.block.place.scale", "bodies.plate.place.scale"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
+int main(void) {
+  TCase *test_case = tcase_create("gradient_shape_friction");
+  tcase_add_test(test_case, rubbed_blocks_agree_by_scale_with_differences_of_replays);
+  tcase_add_test(test_case, a_slab_between_obstacles_agrees_by_scale_with_differences_of_replays);
+  tcase_add_test(test_case, a_thrown_block_that_sticks_and_slips_agrees_by_scale_with_differences_of_replays);
+  tcase_add_test(test_case, bodies_under_following_pressures_agree_by_scale_with_differences_of_replays);
+  return suite_run("gradient_shape_friction", test_case, 300);
+}
