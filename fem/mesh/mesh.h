@@ -128,6 +128,9 @@ double fem_mesh_min_dihedral(const FemMesh *mesh);
 
 Status fem_mesh_quality(const FemMesh *mesh, FemMeshQuality *quality);
 
+// How many of the positions (count, 3) an earlier one has exactly: `coincident_vertex_count` of a mesh.
+Status fem_mesh_coincident(const double *positions, int count, int *coincident_count);
+
 // Boundary triangles, outward oriented; `*triangles` is owned by the caller (memory_free).
 Status fem_mesh_surface(const FemMesh *mesh, int (**triangles)[3], int *triangle_count);
 

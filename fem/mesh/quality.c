@@ -127,12 +127,13 @@ static int compare_position(const void *left, const void *right) {
   return 0;
 }
 
-static Status count_coincident(const FemMesh *mesh, FemMeshQuality *quality) {
-  double(*sorted)[3] = memory_copy(mesh->rest, (size_t)mesh->vertex_count, sizeof *sorted);
+Status fem_mesh_coincident(const double *positions, int count, int *coincident_count) {
+  double(*sorted)[3] = memory_copy(positions, (size_t)count, sizeof *sorted);
+  *coincident_count = 0;
   if (!sorted) return status_no_memory("the vertices of a mesh");
-  qsort(sorted, (size_t)mesh->vertex_count, sizeof *sorted, compare_position);
-  for (int v = 1; v < mesh->vertex_count; v++)
-    if (compare_position(sorted[v - 1], sorted[v]) == 0) quality->coincident_vertex_count++;
+  qsort(sorted, (size_t)count, sizeof *sorted, compare_position);
+  for (int v = 1; v < count; v++)
+    if (compare_position(sorted[v - 1], sorted[v]) == 0) (*coincident_count)++;
   memory_free(sorted);
   return STATUS_OK;
 }
@@ -208,6 +209,6 @@ Status fem_mesh_quality(const FemMesh *mesh, FemMeshQuality *quality) {
   measure_box(mesh, quality);
   TRY(measure_edges(mesh, quality));
   TRY(count_components(mesh, quality));
-  TRY(count_coincident(mesh, quality));
+  TRY(fem_mesh_coincident(mesh->rest, mesh->vertex_count, &quality->coincident_vertex_count));
   return measure_surface(mesh, quality);
 }

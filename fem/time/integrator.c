@@ -169,6 +169,7 @@ static Status say_why(const FemIntegrator *integrator, double time, double step,
   FemReasonPlace place = {.time = time,
                           .step = step,
                           .positions = integrator->ida.state->positions,
+                          .velocities = integrator->ida.state->velocities,
                           .unknown = worst % integrator->ida.part.n,
                           .is_position = worst < integrator->ida.part.n,
                           .retry = integrator->ida.failure.retry_message};

@@ -49,14 +49,15 @@ Status fem_reason_fail(const FemReason *reason, const FemSystem *system, const F
   int dof = system->numbering.dof_of_unknown[place->unknown], vertex = dof / 3;
   const double *x = place->positions + 3 * vertex;
   const char *retry = place->retry, *advice = reason->advice;
-  char element[96], inverted[400];
+  char element[96], inverted[400], worst[64] = "position";
   name_inverted(model, place->positions, inverted, sizeof inverted);
   name_element(model, place->positions, vertex, element, sizeof element);
+  if (!place->is_position) snprintf(worst, sizeof worst, "velocity (%.3g m/s)", place->velocities[dof]);
   return status_fail(
       STATUS_SOLVER,
       "at t = %.9g s, step %.3g s: %s%s%s%s. Worst: %s of vertex %d of body '%s', now at (%.6g, %.6g, "
       "%.6g) m, %c%s%s. Try %s",
-      place->time, place->step, reason->what, retry[0] ? " (last: " : "", retry, retry[0] ? ")" : "",
-      place->is_position ? "position" : "velocity", vertex, fem_model_body_name(model, vertex), x[0], x[1],
-      x[2], "xyz"[dof % 3], element, inverted, advice);
+      place->time, place->step, reason->what, retry[0] ? " (last: " : "", retry, retry[0] ? ")" : "", worst,
+      vertex, fem_model_body_name(model, vertex), x[0], x[1], x[2], "xyz"[dof % 3], element, inverted,
+      advice);
 }

@@ -11,13 +11,13 @@ typedef struct FemReason {
 
 typedef struct FemReasonPlace {
   double time, step; // [s]
-  const double *positions;
+  const double *positions, *velocities;
   int unknown;       // the one with the largest error or unbalanced force
   bool is_position;  // of its position, else of its velocity
   const char *retry; // what asked last for a smaller step; empty: nothing did
 } FemReasonPlace;
 
-// STATUS_SOLVER, with a message that names vertex, body, position, of its elements the one that is squeezed
+// STATUS_SOLVER, with a message that names vertex, body, position, velocity if that is worst, of its elements the one that is squeezed
 // most, and elements that are inside out with what their law bears.
 Status fem_reason_fail(const FemReason *reason, const FemSystem *system, const FemReasonPlace *place);
 

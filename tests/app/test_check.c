@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What `tetlap check` says of sizes and pressures.
-#include "suite.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "folder.h"
+#include "suite.h"
 
 // What it says of a scene of tests/scenes; the caller's (free).
 static char *check_scene(const char *name, const char *sets) {
@@ -109,6 +110,25 @@ START_TEST(lines_are_told_with_how_many_points_they_have) {
 }
 END_TEST
 
+// Two tetrahedra on one face, each with vertices of its own.
+START_TEST(a_mesh_that_is_open_is_told) {
+  static const char mesh[] = "MeshVersionFormatted 2\nDimension 3\nVertices\n8\n"
+                             "0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 1 1 0\n"
+                             "Tetrahedra\n2\n1 2 3 4 0\n5 6 7 8 0\nEnd\n";
+  char path[96], sets[256];
+  FileWriter writer;
+  folder_make();
+  snprintf(path, sizeof path, "%s/seam.mesh", folder);
+  ck_assert_ok(file_begin(&writer, path));
+  fputs(mesh, writer.stream);
+  ck_assert_ok(file_commit(&writer));
+  snprintf(sets, sizeof sets, "--set bodies.block.mesh=%s", path);
+  ck_says("drop", "", "exactly on another", false);
+  ck_says("drop", sets, "note: 'block' has 3 vertices that lie exactly on another", true);
+  folder_remove();
+}
+END_TEST
+
 int main(void) {
   TCase *cases = tcase_create("check");
   tcase_add_test(cases, every_body_has_its_box);
@@ -119,5 +139,6 @@ int main(void) {
   tcase_add_test(cases, a_mesh_in_mm_among_metres_is_told);
   tcase_add_test(cases, a_scene_in_mm_is_told);
   tcase_add_test(cases, lines_are_told_with_how_many_points_they_have);
+  tcase_add_test(cases, a_mesh_that_is_open_is_told);
   return suite_run("check", cases, 30);
 }

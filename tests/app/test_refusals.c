@@ -128,6 +128,17 @@ START_TEST(a_file_of_pytorch_is_refused_with_what_to_do) {
 }
 END_TEST
 
+// A model that gives V alone is refused before anything runs, not where contact begins.
+START_TEST(an_audit_of_forces_needs_more_than_volumes) {
+  ck_assert_refused(
+      65,
+      "$tetlap compare $examples/02_two_blocks.yaml --overlap clip --audit-only " TETLAP_MODEL_16 " -o out",
+      "error: --audit-only: ");
+  ck_assert(says("gives V alone: forces need its centroid or its gradient"));
+  ck_assert_int_ne(access("out", F_OK), 0);
+}
+END_TEST
+
 // Mean errors of data with other volumes than the paper's are no better or worse than its own.
 START_TEST(the_papers_figures_stand_beside_data_like_the_papers_alone) {
   ck_assert_refused(0, "$tetlap eval clip --law paper-test -n 20 | grep -q 'mean |dV| *paper'", "");
@@ -165,6 +176,7 @@ int main(void) {
   tcase_add_test(cases, a_capture_of_no_pairs_is_told);
   tcase_add_test(cases, stress_names_the_model_that_is_none);
   tcase_add_test(cases, a_file_of_pytorch_is_refused_with_what_to_do);
+  tcase_add_test(cases, an_audit_of_forces_needs_more_than_volumes);
   tcase_add_test(cases, the_papers_figures_stand_beside_data_like_the_papers_alone);
   tcase_add_test(cases, a_seed_that_verdict_json_would_round_is_refused);
   tcase_add_test(cases, models_in_one_word_are_refused);

@@ -7,6 +7,7 @@
 
 #include "fem/effect/effect.h"
 #include "fem/effect/system_energy.h"
+#include "fem/mesh/mesh.h"
 #include "fem/model/compliance/compliance.h"
 #include "fem/model/compliance/thickness.h"
 #include "fem/run/check/choice.h"
@@ -186,6 +187,23 @@ static void note_lines(const FemModel *model, AppCheckNotes *notes) {
   }
 }
 
+// Bodies whose mesh is open where vertices lie on each other: cracks that no picture shows.
+static Status note_seams(const FemModel *model, AppCheckNotes *notes) {
+  for (int b = 0, k = 0; b < model->body_count && k < APP_CHECK_SEAMS; b++) {
+    const FemModelBody *body = &model->bodies[b];
+    int coincident;
+    TRY(fem_mesh_coincident(model->rest + 3 * (size_t)body->vertex_begin,
+                            body->vertex_end - body->vertex_begin, &coincident));
+    if (coincident == 0) continue;
+    snprintf(notes->seams[k], sizeof notes->seams[k],
+             "'%.64s' has %d vertices that lie exactly on another: its mesh is open there; merge them unless "
+             "it is meant",
+             body->name, coincident);
+    note(notes, true, notes->seams[k++]);
+  }
+  return STATUS_OK;
+}
+
 static AppCheckNotes take_notes(const AppJob *job) {
   const FemSceneDef *scene = &job->scene;
   int solids = scene->body_count + scene->obstacle_count;
@@ -210,6 +228,7 @@ Status app_check_notes_take(const AppJob *job, AppCheckNotes *notes) {
   if (job->scene.contact.is_on) TRY(note_overlaps(job, notes));
   TRY(note_thin(job, notes));
   TRY(note_crushed(job, notes));
+  TRY(note_seams(&job->model, notes));
   note_units(&job->model, notes);
   note_lines(&job->model, notes);
   return STATUS_OK;

@@ -6,7 +6,7 @@
 #include "app/job/job.h"
 #include "fem/run/check/start.h"
 
-enum { APP_CHECK_NOTES = 32, APP_CHECK_THIN = 6, APP_CHECK_LINES = 6 };
+enum { APP_CHECK_NOTES = 32, APP_CHECK_THIN = 6, APP_CHECK_LINES = 6, APP_CHECK_SEAMS = 4 };
 
 typedef struct AppCheckNotes {
   const char *texts[APP_CHECK_NOTES]; // of the program or in the arrays below   (count)
@@ -14,7 +14,7 @@ typedef struct AppCheckNotes {
   char overlaps[FEM_RUN_START_TOLD_COUNT][FEM_RUN_START_TEXT_SIZE];
   char thin[APP_CHECK_THIN][512];
   char crushed[512], far_larger[512];
-  char lines[APP_CHECK_LINES][256];
+  char lines[APP_CHECK_LINES][256], seams[APP_CHECK_SEAMS][256];
 } AppCheckNotes;
 
 // Takes the notes where they are to stay: `texts` points into them. The Status of the first evaluation of

@@ -65,6 +65,8 @@ static Status add_model(AppComparison *comparison, const FemSceneDef *scene, con
   model->source = source;
   model->is_driven = is_driven;
   comparison->model_count++;
+  if (fem_effect_contact_check_overlap(scene, source, &model->overlap))
+    return status_prefix(STATUS_INPUT, "%s", is_driven ? "--overlap" : "--audit-only");
   return STATUS_OK;
 }
 

@@ -116,18 +116,16 @@ Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *n
   return status_prefix(status, "%s: contact.overlap", find_word(scene).text);
 }
 
-// Forces need more than V.
-static Status check_model(const FemSceneDef *scene, const OverlapModel *model) {
+Status fem_effect_contact_check_overlap(const FemSceneDef *scene, const char *name,
+                                        const OverlapModel *model) {
   bool has_gradient = overlap_model_has_gradient(model);
   bool is_field = scene->contact.potential == CONTACT_POTENTIAL_FIELD;
   if (has_gradient || (is_field && overlap_model_has_own_centroid(model))) return STATUS_OK;
   return status_fail(
-      STATUS_INPUT,
-      "%s: contact.overlap: '%s' gives %s: forces need its %s%s. `tetlap eval` grades it on pairs",
-      find_word(scene).text, model->ops->name,
+      STATUS_INPUT, "'%s' gives %s: forces need its %s%s. `tetlap eval` grades it on pairs", model->ops->name,
       overlap_model_has_own_centroid(model) ? "V and the centroid" : "V alone",
       is_field ? "centroid or its gradient" : "gradient",
-      overlap_source_of(scene->contact.overlap) == OVERLAP_SOURCE_PYTHON
+      overlap_source_of(name ? name : scene->contact.overlap) == OVERLAP_SOURCE_PYTHON
           ? " (which PyTorch has where V follows from the pairs, without detach() and no_grad())"
           : "");
 }
@@ -136,7 +134,8 @@ static Status build(Contact *contact) {
   const FemModel *model = contact->model;
   const FemContactDef *def = &model->scene->contact;
   TRY(fem_effect_contact_create_overlap(model->scene, NULL, &contact->overlap));
-  TRY(check_model(model->scene, &contact->overlap));
+  if (fem_effect_contact_check_overlap(model->scene, NULL, &contact->overlap))
+    return status_prefix(STATUS_INPUT, "%s: contact.overlap", find_word(model->scene).text);
   contact->bodies = memory_zeroed((size_t)model->body_count, sizeof *contact->bodies);
   contact->shapes = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->shapes);
   contact->solids = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->solids);

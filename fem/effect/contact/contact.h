@@ -22,5 +22,8 @@ const char *fem_effect_contact_name(const void *effect, int number);
 // Makes the overlap model that the word names (overlap/source.h), its file seen from the program; NULL: the
 // scene's. Either with what the scene says of networks. Destroy it with overlap_model_destroy.
 Status fem_effect_contact_create_overlap(const FemSceneDef *scene, const char *name, OverlapModel *overlap);
+// STATUS_INPUT: forces need more than what the model, made of `name`, gives, with what it lacks.
+Status fem_effect_contact_check_overlap(const FemSceneDef *scene, const char *name,
+                                        const OverlapModel *model);
 
 #endif

@@ -33,7 +33,9 @@ FemReason fem_ida_failure_reason(int flag) {
     return (FemReason){"the forces could not be evaluated however short the step",
                        "a smaller time.max_step, or a larger contact.margin"};
   case IDA_TOO_MUCH_ACC:
-    return (FemReason){"the tolerance is finer than the numbers are", "a larger time.tolerance"};
+    return (FemReason){"a value is so large that its last digit is coarser than the tolerance",
+                       "a smaller value (velocity, spin, place, or a formula of the scene); where it is "
+                       "meant, a larger time.tolerance"};
   default:
     return (FemReason){"IDA gave up", "a larger time.tolerance, or a smaller contact.stiffness"};
   }
@@ -45,6 +47,9 @@ int fem_ida_failure_worst(void *ida, int flag, const FemPart *part, N_Vector err
       IDAGetErrWeights(ida, weights) == IDA_SUCCESS)
     return fem_part_worst(part, N_VGetArrayPointer(errors), N_VGetArrayPointer(weights), 0, 2 * n);
   double time, c;
+  if (flag == IDA_TOO_MUCH_ACC && IDAGetCurrentTime(ida, &time) == IDA_SUCCESS &&
+      IDAGetDky(ida, time, 0, errors) == IDA_SUCCESS && IDAGetErrWeights(ida, weights) == IDA_SUCCESS)
+    return fem_part_worst(part, N_VGetArrayPointer(errors), N_VGetArrayPointer(weights), 0, 2 * n);
   N_Vector y, y_dot, y_predicted, y_dot_predicted, r;
   void *self;
   if (IDAGetNonlinearSystemData(ida, &time, &y_predicted, &y_dot_predicted, &y, &y_dot, &r, &c, &self) ==

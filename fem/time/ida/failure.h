@@ -26,7 +26,8 @@ int fem_ida_failure_answer(FemIdaFailure *failure, Status status);
 FemReason fem_ida_failure_reason(int flag);
 
 // The number among the 2·part->n of the unknown with the largest estimated error if the error test failed
-// (IDA_ERR_FAIL), else with the largest unbalanced force; 0: IDA does not say. By all ranks. `errors`,
+// (IDA_ERR_FAIL), with the largest value beside its tolerance if that is finer than the value's digits
+// (IDA_TOO_MUCH_ACC), else with the largest unbalanced force; 0: IDA does not say. By all ranks. `errors`,
 // `weights`: scratch.
 int fem_ida_failure_worst(void *ida, int flag, const FemPart *part, N_Vector errors, N_Vector weights);
 

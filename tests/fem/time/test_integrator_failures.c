@@ -50,6 +50,21 @@ START_TEST(a_force_that_keeps_refusing_ends_the_run_with_its_reason) {
 }
 END_TEST
 
+// Where a value has no digits left for the tolerance, it is named, and is larger than that of the others.
+START_TEST(an_absurd_value_is_named) {
+  Toy toy = {.count = 3, .mass = 1, .link_stiffness = 10};
+  toy_open(&toy);
+  double u[3] = {0}, v[3] = {1, 1e30, 1}, time = 0;
+  FemIntegrator *integrator = start(&toy, FEM_SOLVER_CHOLMOD, def_of(1e-6, 1), u, v);
+  ck_assert_int_eq(fem_integrator_step(integrator, &time), STATUS_SOLVER);
+  ck_assert_msg(strstr(status_message(), "velocity (1e+30 m/s) of vertex 1 of body 'chain'"), "%s",
+                status_message());
+  ck_assert_ptr_nonnull(strstr(status_message(), "Try a smaller value"));
+  fem_integrator_destroy(integrator);
+  toy_close(&toy);
+}
+END_TEST
+
 START_TEST(a_fatal_force_comes_out_as_it_is) {
   Toy toy = {.count = 1, .mass = 1, .wall_stiffness = 10, .broken_after = 0.5, .failure = STATUS_IO};
   toy_open(&toy);
@@ -169,6 +184,7 @@ int main(void) {
   TCase *cases = tcase_create("integrator failures");
   tcase_add_test(cases, a_refused_evaluation_changes_nothing_but_the_step);
   tcase_add_test(cases, a_force_that_keeps_refusing_ends_the_run_with_its_reason);
+  tcase_add_test(cases, an_absurd_value_is_named);
   tcase_add_test(cases, a_fatal_force_comes_out_as_it_is);
   tcase_add_test(cases, a_jump_of_the_force_never_hangs);
   tcase_add_test(cases, a_run_that_crawls_is_given_up);
