@@ -68,8 +68,8 @@ static Status create(void **self, int threads, double tolerance) {
   return STATUS_OK;
 }
 
+// Its memory is kept.
 static void forget_factor(CholmodSolver *solver) {
-  fem_front_factor_destroy(&solver->factor);
   fem_front_tree_destroy(&solver->tree);
   solver->layout = 0;
   solver->is_factorised = false;
@@ -79,6 +79,7 @@ static void destroy(void *self) {
   CholmodSolver *solver = self;
   if (!solver) return;
   forget_factor(solver);
+  fem_front_factor_destroy(&solver->factor);
   cholmod_finish(&solver->common);
   memory_free(solver->order);
   memory_free(solver);
@@ -233,7 +234,7 @@ static Status analyse_matrix(CholmodSolver *solver, const FemMatrix *matrix) {
   if (status == STATUS_OK) status = build_tree(solver, matrix, &graph);
   free_graph(&graph);
   TRY(status);
-  return fem_front_factor_create(&solver->factor, &solver->tree, solver->is_rough);
+  return fem_front_factor_lay_out(&solver->factor, &solver->tree, solver->is_rough);
 }
 
 static Status analyse(void *self, const FemMatrix *pattern) {

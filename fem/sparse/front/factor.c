@@ -40,21 +40,14 @@ static Status no_memory(void) {
   return status_no_memory("the factor of the condensed system (try solver.linear: pcg)");
 }
 
-Status fem_front_factor_create(FemFrontFactor *factor, const FemFrontTree *tree, bool may_be_rough) {
-  const bool with_rough = may_be_rough && tree->value_count > FEW_VALUES;
-  *factor = (FemFrontFactor){.tree = tree};
-  factor->values = memory_zeroed(tree->value_count, sizeof *factor->values);
-  factor->updates = memory_zeroed((size_t)tree->front_count, sizeof *factor->updates);
-  factor->x = memory_zeroed((size_t)tree->size, sizeof *factor->x);
-  factor->carried = memory_zeroed(tree->carried_count, sizeof *factor->carried);
-  const bool with_kept = tree->left_count <= KEPT_VALUES;
-  if (with_kept) factor->kept = memory_zeroed(tree->left_count, sizeof *factor->kept);
-  if (with_rough) factor->rough = memory_zeroed(tree->value_count, sizeof *factor->rough);
-  if (factor->values && factor->updates && factor->x && factor->carried && (factor->rough || !with_rough) &&
-      (factor->kept || !with_kept))
-    return STATUS_OK;
-  fem_front_factor_destroy(factor);
-  return no_memory();
+// Numbers of any value. An eighth is to spare, which takes no memory before it is used.
+static bool make_room(void *array, size_t *room, size_t wanted, size_t size) {
+  void **at = array;
+  if (*at && wanted <= *room) return true;
+  memory_free(*at);
+  *room = wanted + wanted / 8;
+  *at = memory_zeroed(*room, size);
+  return *at;
 }
 
 static void free_stacks(FemFrontFactor *factor) {
@@ -62,6 +55,41 @@ static void free_stacks(FemFrontFactor *factor) {
   memory_free(factor->stacks);
   factor->stacks = NULL;
   factor->stack_count = 0;
+}
+
+static bool make_all_room(FemFrontFactor *factor, const FemFrontTree *tree) {
+  FemFrontRoom *room = &factor->room;
+  return make_room(&factor->values, &room->values, tree->value_count, sizeof *factor->values) &&
+         make_room(&factor->updates, &room->updates, (size_t)tree->front_count, sizeof *factor->updates) &&
+         make_room(&factor->x, &room->x, (size_t)tree->size, sizeof *factor->x) &&
+         make_room(&factor->carried, &room->carried, tree->carried_count, sizeof *factor->carried);
+}
+
+static bool make_kept(FemFrontFactor *factor, const FemFrontTree *tree) {
+  if (tree->left_count <= KEPT_VALUES)
+    return make_room(&factor->kept, &factor->room.kept, tree->left_count, sizeof *factor->kept);
+  memory_free(factor->kept);
+  factor->kept = NULL;
+  return true;
+}
+
+static bool make_rough(FemFrontFactor *factor, const FemFrontTree *tree, bool may_be_rough) {
+  if (may_be_rough && tree->value_count > FEW_VALUES)
+    return make_room(&factor->rough, &factor->room.rough, tree->value_count, sizeof *factor->rough);
+  memory_free(factor->rough);
+  factor->rough = NULL;
+  return true;
+}
+
+Status fem_front_factor_lay_out(FemFrontFactor *factor, const FemFrontTree *tree, bool may_be_rough) {
+  factor->tree = tree;
+  if (factor->room.stack < tree->stack) free_stacks(factor);
+  if (!make_all_room(factor, tree) || !make_kept(factor, tree) || !make_rough(factor, tree, may_be_rough)) {
+    fem_front_factor_destroy(factor);
+    return no_memory();
+  }
+  memset(factor->updates, 0, (size_t)tree->front_count * sizeof *factor->updates);
+  return STATUS_OK;
 }
 
 void fem_front_factor_destroy(FemFrontFactor *factor) {
@@ -76,8 +104,9 @@ static Status make_stacks(FemFrontFactor *factor, int count) {
   free_stacks(factor);
   factor->stacks = memory_zeroed((size_t)count, sizeof *factor->stacks);
   if (!factor->stacks) return no_memory();
+  factor->room.stack = factor->tree->stack + factor->tree->stack / 8;
   for (int t = 0; t < count; t++) {
-    factor->stacks[t] = memory_zeroed(factor->tree->stack, sizeof **factor->stacks);
+    factor->stacks[t] = memory_zeroed(factor->room.stack, sizeof **factor->stacks);
     factor->stack_count = t + 1;
     if (!factor->stacks[t]) return no_memory();
   }

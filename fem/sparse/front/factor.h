@@ -7,6 +7,11 @@
 
 #include "fem/sparse/front/tree.h"
 
+// Numbers that there is room for.
+typedef struct FemFrontRoom {
+  size_t values, rough, updates, kept, stack, x, carried;
+} FemFrontRoom;
+
 typedef struct FemFrontFactor {
   const FemFrontTree *tree; // borrowed
   double *values;           // panels                                          (tree->value_count)
@@ -18,11 +23,13 @@ typedef struct FemFrontFactor {
   int stack_count;
   double *x;       // in the order of elimination                              (tree->size)
   double *carried; // of the rows below of each front                          (tree->carried_count)
+  FemFrontRoom room;
 } FemFrontFactor;
 
-// A zeroed factor can be destroyed. `may_be_rough`: a large one is kept in single precision, too.
-Status fem_front_factor_create(FemFrontFactor *factor, const FemFrontTree *tree, bool may_be_rough);
-void fem_front_factor_destroy(FemFrontFactor *factor);
+// Of a zeroed factor, or of one of another tree, whose memory is used again where it is large enough: pages
+// that are got anew cost as much as a factor. `may_be_rough`: a large one is kept in single precision, too.
+Status fem_front_factor_lay_out(FemFrontFactor *factor, const FemFrontTree *tree, bool may_be_rough);
+void fem_front_factor_destroy(FemFrontFactor *factor); // also a zeroed one
 
 // From the values of the matrix whose places the tree has. STATUS_RETRY: not positive definite.
 Status fem_front_factor_make(FemFrontFactor *factor, const double *values);
