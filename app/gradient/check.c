@@ -89,7 +89,8 @@ static Direction draw_direction(const FemModel *model, const AppGradientWords *w
   for (int p = 0; p < words->by_count; p++) {
     const FemParameter *parameter = &answer->parameters[p];
     double share = random_between(&random, -1, 1);
-    if (can_differ(parameter, stiffness)) direction.ways[p] = share * fem_parameter_value(model, parameter);
+    if (can_differ(parameter, stiffness) && !answer->gradient.kinks[p])
+      direction.ways[p] = share * fem_parameter_value(model, parameter);
   }
   return direction;
 }
@@ -131,7 +132,8 @@ Status app_gradient_check(AppGradientCheck *check, const AppJobOptions *job, con
   }
   for (int g = 0; g < words->of_count; g++)
     for (int p = 0; p < words->by_count; p++)
-      check->along[g] += answer->gradient.derivatives[g * words->by_count + p] * direction.ways[p];
+      if (direction.ways[p] != 0)
+        check->along[g] += answer->gradient.derivatives[g * words->by_count + p] * direction.ways[p];
   TRY(add_along(check, &ahead, &direction, 1, model, words, answer));
   return add_along(check, &behind, &direction, -1, model, words, answer);
 }

@@ -235,7 +235,10 @@ static Status differentiate(Adjoint *adjoint, int p, FemGradient *gradient) {
   FemChange *change = &adjoint->change;
   const double *factors = adjoint->factors;
   size_t values = values_of(adjoint);
-  TRY(fem_change_find(change, &adjoint->varied, &adjoint->tangent, &def->parameters[p], def->follows_choice));
+  TRY(fem_gradient_pass(gradient, def, p,
+                        fem_change_find(change, &adjoint->varied, &adjoint->tangent, &def->parameters[p],
+                                        def->follows_choice)));
+  if (gradient->kinks[p]) return STATUS_OK;
   for (int g = 0; g < def->goal_count; g++) {
     const double *lambda = adjoint->multipliers + values * (size_t)g;
     const double *slope = adjoint->slopes + values * (size_t)g;
@@ -263,7 +266,8 @@ static Status find(FemGradient *gradient, Adjoint *adjoint) {
   TRY(fem_change_create(&adjoint->change, &adjoint->tangent));
   TRY(create_krylov(adjoint));
   TRY(solve_goals(adjoint, gradient));
-  for (int p = 0; p < adjoint->def->parameter_count; p++) TRY(differentiate(adjoint, p, gradient));
+  for (int p = 0; p < adjoint->def->parameter_count; p++)
+    if (!gradient->kinks[p]) TRY(differentiate(adjoint, p, gradient));
   return STATUS_OK;
 }
 
@@ -363,12 +367,25 @@ Status fem_gradient_make_weights(FemGradient *gradient, const FemModel *model, c
 Status fem_gradient_create(FemGradient *gradient, const FemGradientDef *def) {
   size_t goals = (size_t)def->goal_count;
   *gradient =
-      (FemGradient){.values = memory_zeroed(goals, sizeof(double)),
+      (FemGradient){.parameter_count = def->parameter_count,
+                    .values = memory_zeroed(goals, sizeof(double)),
                     .residuals = memory_zeroed(goals, sizeof(double)),
                     .mismatches = memory_zeroed(goals, sizeof(double)),
-                    .derivatives = memory_zeroed(goals * (size_t)def->parameter_count, sizeof(double))};
-  bool fits = gradient->values && gradient->residuals && gradient->mismatches && gradient->derivatives;
+                    .derivatives = memory_zeroed(goals * (size_t)def->parameter_count, sizeof(double)),
+                    .kinks = memory_zeroed((size_t)def->parameter_count, sizeof(char *))};
+  bool fits = gradient->values && gradient->residuals && gradient->mismatches && gradient->derivatives &&
+              gradient->kinks;
   return fits ? STATUS_OK : status_no_memory("a gradient");
+}
+
+Status fem_gradient_pass(FemGradient *gradient, const FemGradientDef *def, int p, Status status) {
+  if (status != STATUS_INPUT || !fem_parameter_is_of_shape(&def->parameters[p])) return status;
+  const char *why = status_message();
+  gradient->kink_count++;
+  if (gradient->kink_count == def->parameter_count) return status;
+  gradient->kinks[p] = memory_copy(why, strlen(why) + 1, 1);
+  for (int g = 0; g < def->goal_count; g++) gradient->derivatives[g * def->parameter_count + p] = NAN;
+  return gradient->kinks[p] ? STATUS_OK : status_no_memory("a gradient");
 }
 
 Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGradientDef *def) {
@@ -398,6 +415,8 @@ Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGrad
 }
 
 void fem_gradient_destroy(FemGradient *gradient) {
+  for (int k = 0; gradient->kinks && k < gradient->parameter_count; k++) memory_free(gradient->kinks[k]);
+  memory_free(gradient->kinks);
   memory_free(gradient->values);
   memory_free(gradient->residuals);
   memory_free(gradient->mismatches);

@@ -35,6 +35,9 @@ typedef struct FemGradient {
   size_t weight_count; // of the overlap model's network; 0: not asked for
   double *weights;     // dg/dw, owned                          (goal_count, weight_count)
   double *derivatives; // dg/dp, owned                       (goal_count, parameter_count)
+  // Why a parameter of shape has none, which are NaN then; NULL: it has. Owned            (parameter_count)
+  char **kinks;
+  int parameter_count, kink_count;
 } FemGradient;
 
 bool fem_gradient_has_friction(const FemModel *model);
@@ -52,6 +55,9 @@ Status fem_gradient_check(const FemModel *model, const FemGradientDef *def);
 Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGradientDef *def);
 // Room for the results, all 0.
 Status fem_gradient_create(FemGradient *gradient, const FemGradientDef *def);
+// The status of finding what parameter p changes. A kink by a body's shape (fem_shape_derive) is noted and
+// passes while another parameter has no kink.
+Status fem_gradient_pass(FemGradient *gradient, const FemGradientDef *def, int p, Status status);
 // Room for those by weights, if they are asked for.
 Status fem_gradient_make_weights(FemGradient *gradient, const FemModel *model, const FemGradientDef *def);
 void fem_gradient_destroy(FemGradient *gradient); // also of a zeroed one

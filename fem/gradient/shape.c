@@ -264,6 +264,16 @@ static Status evaluate_contact(const FemTangent *tangent, const double *rests, d
   return status;
 }
 
+// Without a difference: what acts there.
+static Status evaluate_there(const FemTangent *tangent, Side *side) {
+  size_t values = 3 * (size_t)tangent->system->model->vertex_count;
+  TRY(create_side(side, tangent));
+  for (int i = 0; i < tangent->interface_count; i++)
+    TRY(fem_tangent_add_contact(tangent, i, side->pressing + values * (size_t)i));
+  return tangent->stick ? fem_effect_stick.advance(tangent->stick, tangent->state, &side->history)
+                        : STATUS_OK;
+}
+
 // `sides`: behind, there, ahead.
 static Status judge_kinks(const FemTangent *tangent, const Side sides[3], size_t values) {
   const double *behind = sides[0].pressing, *there = sides[1].pressing, *ahead = sides[2].pressing;
@@ -321,7 +331,9 @@ static Status derive_contact(FemShape *shape, const FemTangent *tangent, const d
   shape->energies = memory_zeroed(count, sizeof *shape->energies);
   bool fits = shape->contact && shape->energies;
   Status status = fits ? STATUS_OK : status_no_memory("contact of another shape");
-  for (int k = 0; k < 3 && !status; k++) status = evaluate_contact(tangent, rests, (k - 1) * step, &sides[k]);
+  if (!status) status = evaluate_there(tangent, &sides[1]);
+  for (int k = 0; k < 3 && !status; k += 2)
+    status = evaluate_contact(tangent, rests, (k - 1) * step, &sides[k]);
   if (!status) status = judge_kinks(tangent, sides, values);
   for (size_t i = 0; i < values * count && !status; i++)
     shape->contact[i] = (sides[2].forces[i] - sides[0].forces[i]) / (2 * step);

@@ -43,6 +43,14 @@ class Gradient(unittest.TestCase):
         self.assertEqual((found["unit"], found["parameter_unit"][:2]), (["N", "J"], ["kg/m³", "Pa"]))
         self.assertLess(max(found["adjoint_residual"].max(), found["force_residual"]), 1e-10)
 
+    def test_one_key_with_a_kink_is_told_and_the_others_are_answered(self):
+        scene = {**TWO, "bodies": [{**TWO["bodies"][0], "mesh": {"box": {"size": [0.2, 0.2, 0.1], "cells": [4, 4, 2]}}}, TWO["bodies"][1]]}
+        keys = ["bodies.block.place.scale[2]", "bodies.block.place.scale"]
+        found = tetlap.gradient(scene, "force:block:upper:z", keys)
+        self.assertEqual(list(found["no_derivative"]), keys[:1])
+        self.assertIn("equally far", found["no_derivative"][keys[0]])
+        self.assertTrue(np.isnan(found["derivative"][0, 0]) and np.isfinite(found["derivative"][0, 1]))
+
     def test_one_quantity_by_one_parameter_with_a_value_replaced(self):
         found = tetlap.gradient(SCENE, "force:block:z", DENSITY, set={DENSITY: 2000})
         self.assertEqual(found["derivative"].shape, (1, 1))

@@ -39,6 +39,7 @@ def _arrays(found, of, by):
         "unit": [goal["unit"] for goal in goals],
         "parameter_unit": [cell["unit"] for cell in rows[0]],
         "does_not_act": {key: cell["does_not_act"] for key, cell in zip(by, rows[0]) if cell["does_not_act"]},
+        "no_derivative": {key: cell["no_derivative"] for key, cell in zip(by, rows[0]) if cell["no_derivative"]},
         "adjoint_residual": np.array([goal["adjoint_residual"] for goal in goals]),
         "matrix_residual": np.array([_number(goal["matrix_residual"]) for goal in goals]),
         "force_residual": found["force_residual"],
@@ -75,10 +76,10 @@ def gradient(scene: Scene, of: str | list[str], by: str | list[str], *, set: Set
     there is.
 
     value (of): the quantities. derivative (of, by): dq/dp. share (of, by): p dq/dp / q. parameter (by): their values. unit and
-    parameter_unit: lists of texts. does_not_act: why a derivative is 0, by key. force_residual, adjoint_residual (of),
-    matrix_residual (of): how exact. With `check`, from three runs more: halved (of, by), by which share of itself a derivative moves where
-    steps are halved; along_by_derivatives and along_by_runs (of), how q changes along a random direction. With `weights`, weights: dq/dw (of),
-    each as `read_weights` gives it. contact_stiffness: "given", "kept", "follows" or "none". Where there is no number: NaN.
+    parameter_unit: lists of texts. does_not_act: why a derivative is 0, no_derivative: why it is NaN, by key. force_residual,
+    adjoint_residual (of), matrix_residual (of): how exact. With `check`, from three runs more: halved (of, by), by which share of itself a
+    derivative moves where steps are halved; along_by_derivatives and along_by_runs (of), how q changes along a random direction. With
+    `weights`, weights: dq/dw (of), each as `read_weights` gives it. contact_stiffness: "given", "kept", "follows" or "none". Where there is no number: NaN.
 
     RunError: the scene has no such gradient, or the run failed; it carries the program's message.
     """

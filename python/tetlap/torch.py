@@ -19,6 +19,7 @@ from pathlib import Path
 
 import torch
 
+from ._errors import RunError
 from ._gradient import gradient as _gradient_of_arrays
 from ._library import Model
 from ._scene import Scene, Settings, override_texts
@@ -127,6 +128,8 @@ class _Run(torch.autograd.Function):
         else:
             found = _run_with(scene, keys, of, overrides + of_values, at, card, dict(zip(names, values[len(keys):])))
             ctx.tensors = {name: torch.stack([torch.from_numpy(slope[name]) for slope in found["weights"]]) for name in names}
+        for key, why in found["no_derivative"].items():
+            raise RunError(f"{key}: {why}", 64, None)
         if found["contact_stiffness"] == "follows":
             _warn_of_choice(keys)
         ctx.derivative, ctx.dtypes = torch.from_numpy(found["derivative"]), [value.dtype for value in values]

@@ -190,6 +190,8 @@ static Status print_plain(const Answer *answer) {
     AppTablePart part = part_of(answer, rows);
     if (words->by_count > 0)
       TRY(app_table_print(&(AppTable){&part, 1, words->by_count}, APP_TABLE_PLAIN, stdout));
+    for (int p = 0; p < words->by_count; p++)
+      if (answer->found.gradient.kinks[p]) printf("%s: %s\n", words->by[p], answer->found.gradient.kinks[p]);
     if (answer->found.gradient.weights) print_weights(answer, g);
   }
   return STATUS_OK;
@@ -211,7 +213,11 @@ static void record_goal(const Answer *answer, int g, Record *record) {
   }
   if (gradient->weights) record_number(record, "weights_length", length_of(gradient, g));
   Record *by = record_child(record, "by");
-  for (int p = 0; p < words->by_count; p++) app_table_record(&part, p, record_child(by, words->by[p]));
+  for (int p = 0; p < words->by_count; p++) {
+    Record *cell = record_child(by, words->by[p]);
+    app_table_record(&part, p, cell);
+    record_text(cell, "no_derivative", gradient->kinks[p]);
+  }
 }
 
 static Status print_json(const Answer *answer) {

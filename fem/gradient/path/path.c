@@ -48,7 +48,10 @@ static Status add_step(FemSweep *sweep, int p, FemGradient *gradient) {
   const FemGradientDef *def = sweep->def;
   FemChange *change = &sweep->change;
   const double *factors = sweep->factors;
-  TRY(fem_change_find(change, &sweep->varied, &sweep->tangent, &def->parameters[p], def->follows_choice));
+  if (gradient->kinks[p]) return STATUS_OK;
+  TRY(fem_gradient_pass(
+      gradient, def, p,
+      fem_change_find(change, &sweep->varied, &sweep->tangent, &def->parameters[p], def->follows_choice)));
   resist(sweep, change);
   for (int g = 0; g < def->goal_count; g++) {
     FemSweepGoal *goal = &sweep->goals[g];

@@ -149,6 +149,27 @@ START_TEST(a_kink_of_the_depth_is_told_and_a_common_factor_has_none) {
 }
 END_TEST
 
+// One key with a kink leaves the others their derivatives.
+START_TEST(a_kink_by_one_key_is_told_beside_the_derivatives_by_others) {
+  const char *cells = "bodies.lower.mesh.box.cells=[4, 4, 2]", *up = "displacement:upper:z";
+  const Asked both = {
+      .scene = "gradient_blocks", .setting = cells, .of = {up}, .by = {LOWER "scale[2]", LOWER "scale"}};
+  const Asked alone = {.scene = "gradient_blocks", .setting = cells, .of = {up}, .by = {LOWER "scale"}};
+  Answer answer, other;
+  ck_assert_ok(run(&both, NULL, &answer));
+  ck_assert_ok(run(&alone, NULL, &other));
+  ck_assert_ptr_nonnull(answer.gradient.kinks[0]);
+  ck_assert_msg(strstr(answer.gradient.kinks[0], "equally far from two faces") != NULL, "%s",
+                answer.gradient.kinks[0]);
+  ck_assert(isnan(answer.gradient.derivatives[0]));
+  ck_assert_ptr_null(answer.gradient.kinks[1]);
+  ck_assert_double_eq(answer.gradient.derivatives[1], other.gradient.derivatives[0]);
+  ck_assert_double_ne(answer.gradient.derivatives[1], 0);
+  destroy(&answer);
+  destroy(&other);
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("gradient_shape");
   tcase_add_checked_fixture(test_case, folder_make, folder_remove);
@@ -163,5 +184,6 @@ int main(void) {
   tcase_add_test(test_case, a_stiffness_that_is_chosen_is_kept);
   tcase_add_test(test_case, what_has_no_derivative_by_shape_is_refused);
   tcase_add_test(test_case, a_kink_of_the_depth_is_told_and_a_common_factor_has_none);
+  tcase_add_test(test_case, a_kink_by_one_key_is_told_beside_the_derivatives_by_others);
   return suite_run("gradient_shape", test_case, 300);
 }
