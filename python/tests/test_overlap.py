@@ -15,7 +15,7 @@ from unittest import mock
 import numpy as np
 
 import tetlap
-from tetlap import _library
+from tetlap._overlap import library as _library
 
 SIMPLEX = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
 
@@ -102,7 +102,7 @@ class Pairs(unittest.TestCase):
         self.assertTrue(flags[2] & tetlap.Flag.ENCLOSED)
 
     def test_what_is_float64_and_contiguous_is_not_copied(self):
-        from tetlap._volumes import _pairs
+        from tetlap._overlap.volumes import _pairs
 
         x = np.random.default_rng(1).random((100, 2, 4, 3))
         x.flags.writeable = False

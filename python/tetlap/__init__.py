@@ -52,7 +52,7 @@ except ModuleNotFoundError as error:
 from ._compare import Compared, Comparison, compare
 from ._errors import Error, RunError, UnknownNameError
 from ._gradient import gradient
-from ._library import Model, models
+from ._overlap.library import Model, models
 from ._map import map  # noqa: A004
 from ._pairs import evaluate, load_pairs
 from ._poses import Poses, poses
@@ -61,9 +61,9 @@ from ._run import run
 from ._simulation import Body, Contact, Drive, Loads, Simulation, State
 from ._table import Failure, Results
 from ._verdict import Verdict, verdict
-from ._volumes import Flag, MeshPairs, Overlap, mesh_overlap, mesh_pairs, overlap
-from ._weights import Weights, read_weights, write_weights
-from ._wrapped import wrapped
+from ._overlap.volumes import Flag, MeshPairs, Overlap, mesh_overlap, mesh_pairs, overlap
+from ._overlap.weights import Weights, read_weights, write_weights
+from ._overlap.wrapped import wrapped
 
 __all__ = ["Body", "Compared", "Comparison", "Contact", "Drive", "Error", "Failure", "Flag", "Frame", "Frames", "Loads", "MeshPairs",
            "Model", "Overlap", "Poses", "Results", "Run", "RunError", "Simulation", "State", "UnknownNameError", "Verdict", "Weights",
@@ -73,7 +73,7 @@ __all__ = ["Body", "Compared", "Comparison", "Contact", "Drive", "Error", "Failu
 
 def __getattr__(name):
     if name == "__version__":
-        from ._library import version
+        from ._overlap.library import version
 
         return version()
     if name == "torch":

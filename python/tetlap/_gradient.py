@@ -12,7 +12,7 @@ from . import _locate
 from ._compare import _execute
 from ._run import _place_scene
 from ._scene import Scene, Settings, override_texts
-from ._weights import read_weights
+from ._overlap.weights import read_weights
 
 
 def _names(value, what, example):

@@ -27,7 +27,7 @@ from ._run import _INTERRUPTED, _Folder
 from ._scene import OverlapModel, Scene, Settings, override_texts, scene_text, with_absolute_paths
 from ._simulation import Simulation
 from ._table import Failure, Results, Table, as_row
-from ._wrapped import Wrapped
+from ._overlap.wrapped import Wrapped
 
 _log = logging.getLogger("tetlap")
 _COMMIT_S = 1.0  # what a kill may cost, and how often progress is told to a terminal

@@ -20,7 +20,7 @@ from . import _locate, serve
 from ._errors import RunError
 from ._results import Frame, Frames, Run
 from ._scene import OverlapModel, Scene, Settings, override_texts, scene_text, with_absolute_paths
-from ._wrapped import Wrapped
+from ._overlap.wrapped import Wrapped
 
 _log = logging.getLogger("tetlap")
 _POLL_S = 0.02

@@ -21,10 +21,10 @@ import torch
 
 from ._errors import RunError
 from ._gradient import gradient as _gradient_of_arrays
-from ._library import Model
+from ._overlap.library import Model
 from ._scene import Scene, Settings, override_texts
-from ._volumes import _model, overlap as _overlap_of_arrays
-from ._weights import Weights, write_weights
+from ._overlap.volumes import _model, overlap as _overlap_of_arrays
+from ._overlap.weights import Weights, write_weights
 
 __all__ = ["network", "overlap", "run"]
 

@@ -11,8 +11,8 @@ from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_int32, c_size_t,
 
 import numpy as np
 
-from . import _locate
-from ._errors import Error
+from .. import _locate
+from .._errors import Error
 
 INVALID, NO_FILE, MEMORY, INTERNAL, DEVICE = 1, 2, 3, 4, 5
 VOLUME, GRADIENT, HESSIAN, CENTROID = 1 << 0, 1 << 1, 1 << 2, 1 << 3

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from . import _locate
-from ._errors import Error
+from .. import _locate
+from .._errors import Error
 
 _FORMAT, _VERSION = "tetlap-net", 1
 _TYPES = {"F32": np.dtype("<f4"), "F64": np.dtype("<f8")}
@@ -40,7 +40,7 @@ def _locate_weights(path):
     path = Path(path)
     if path.suffix == "" and not path.exists():  # the name of a network that ships
         for folder in (Path(_locate.program()).parent / "share" / "tetlap", Path(_locate.program()).parents[1] / "share" / "tetlap",
-                       Path(__file__).resolve().parents[2]):
+                       Path(__file__).resolve().parents[3]):
             shipped = folder / "net" / "weights" / f"{path}.safetensors"
             if shipped.is_file():
                 return shipped

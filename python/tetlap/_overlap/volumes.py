@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple, Optional
 
 import numpy as np
 
-from . import _library
+from . import library as _library
 
 if TYPE_CHECKING:
     import scipy.sparse
