@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Functions of time, or of something else, written as formulas, "0.1*sin(2*pi*t)": parsed once into a short
-// list of instructions for a stack, then evaluated together with the exact first and second derivative
+// list of instructions for a stack. They are evaluated together with the exact first and second derivative
 // (forward differentiation). A formula has no other names than these, no loops and no files; parsing and
 // evaluation are bounded in time and memory.
 //

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Newton's matrix of contact, ∂²U/∂x², and which vertices it couples. A tetrahedron that contact has cut
-// meets another with several cells, and the cells of one element move with the same nodes: the pairs'
+// meets another with several cells, and the cells of one element move with the same nodes. The pairs'
 // matrices are summed over the cells of two elements before they are handed on.
 #ifndef TETLAP_CONTACT_STIFFNESS_H
 #define TETLAP_CONTACT_STIFFNESS_H

@@ -11,8 +11,8 @@ int dist_mpi_is_wanted(void);
 void dist_mpi_begin_alone(void);
 
 // Starts MPI and sets the table; from here on only the first rank is heard. At exit, however that comes
-// about, all ranks end with one exit code: what all agree on, or that of a rank that failed by itself, which
-// is heard then and ends the others within some two seconds. `close` is called before, where all end in
+// about, all ranks end with one exit code: what all agree on, or that of a rank that failed by itself. Such a
+// rank is heard and ends the others within some two seconds. `close` is called before, where all end in
 // order.
 void dist_mpi_begin(int *argument_count, char ***arguments, void (*close)(void));
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The product of the matrix that ranks share with a vector of rows, without a copy of the matrix: each rank
+// The product of the matrix that ranks share with a vector of rows, without a copy of the matrix. Each rank
 // multiplies what it has added, and what vertices at the border share is sent to and fro by PETSc.
 #ifndef TETLAP_DIST_PRODUCT_H
 #define TETLAP_DIST_PRODUCT_H

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs of one scene that differ in the overlap model, compared with a reference: trajectories and contact
-// forces over time, and the audit, which evaluates the models in the same configurations of the reference's
-// run.
+// Runs of one scene that differ in the overlap model, compared with a reference. What is compared are
+// trajectories and contact forces over time, and the audit, which evaluates the models in the same
+// configurations of the reference's run.
 #ifndef TETLAP_APP_COMPARE_COMPARISON_H
 #define TETLAP_APP_COMPARE_COMPARISON_H
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far a run is, in its folder, for those who watch it: progress.json, a few times a minute
-// at least and once a second at most, and manifest.json as soon as there is something to see. The former goes
-// when the run ends; one that is left behind names a process that is gone.
+// How far a run is, in its folder, for those who watch it. progress.json is written a few times a minute at
+// least and once a second at most, manifest.json as soon as there is something to see. The former goes when
+// the run ends; one that is left behind names a process that is gone.
 #ifndef TETLAP_APP_JOB_BEACON_H
 #define TETLAP_APP_JOB_BEACON_H
 

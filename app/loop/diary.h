@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was done to a run from outside, as text: a line of JSON for each thing that was set, each advance, and
-// each time that a state was kept, because the integrator begins anew there. Whoever does the same again,
-// line by line, gets the same run to the last bit (`tetlap run --replay`).
+// What was done to a run from outside, as text. A line of JSON stands for each thing that was set, each
+// advance, and each time that a state was kept, because the integrator begins anew there. Whoever does the
+// same again, line by line, gets the same run to the last bit (`tetlap run --replay`).
 //
 //   {"format": 1, "vertices": 1234}
 //   {"drive": "finger", "to": [0, 0, -0.001], "ramp": null}     ramp null: until the next advance ends

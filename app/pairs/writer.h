@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The results of an overlap model for pairs, as text (a line a pair, a header), JSON (an object a line), or
-// NumPy's .npy (a record a pair, with fields volume, gradient, centroid, flags).
+// NumPy's .npy. That has a record a pair, with fields volume, gradient, centroid, flags.
 #ifndef TETLAP_APP_PAIRS_WRITER_H
 #define TETLAP_APP_PAIRS_WRITER_H
 

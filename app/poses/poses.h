@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// V and wrench of many poses of a body of a scene (device/poses/poses.h), a block of poses at a time: those
+// V and wrench of many poses of a body of a scene (device/poses/poses.h), a block of poses at a time. Those
 // of a block share the pairs of tetrahedra that may meet in any of them.
 #ifndef TETLAP_APP_POSES_POSES_H
 #define TETLAP_APP_POSES_POSES_H

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two flat slabs whose regular meshes do not match, pressed together and slid by a tenth of an element at a
-// time, without friction: the pressure must be even and must not push sideways, although each mesh cuts the
+// time, without friction. The pressure must be even and must not push sideways, although each mesh cuts the
 // other into ever different pieces.
 //
 //         ┌──┬──┬──┬──┬──┐  ──► slides

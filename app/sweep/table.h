@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a sweep found, a row a point: sweep.json, sweep.csv, the page sweep.html and the table for a terminal,
-// in which runs that are repeated are one row: medians of their times.
+// What a sweep found, a row a point: sweep.json, sweep.csv, the page sweep.html and the table for a terminal.
+// Runs that are repeated are one row, with medians of their times.
 #ifndef TETLAP_APP_SWEEP_TABLE_H
 #define TETLAP_APP_SWEEP_TABLE_H
 

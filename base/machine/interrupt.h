@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether this process has been asked to end, by Ctrl-C or SIGTERM. A flag of the process, as signals are:
-// long computations read it, and waits read it again at intervals, since a signal that comes just before a
+// Whether this process has been asked to end, by Ctrl-C or SIGTERM. A flag of the process, as signals are.
+// Long computations read it, and waits read it again at intervals, since a signal that comes just before a
 // wait does not interrupt it.
 #ifndef TETLAP_BASE_MACHINE_INTERRUPT_H
 #define TETLAP_BASE_MACHINE_INTERRUPT_H

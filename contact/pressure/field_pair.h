@@ -30,10 +30,10 @@ static inline double contact_field_secant(const ContactFieldPair *field) {
   return length > 0 ? vec3_length(vec3_at(field->force)) / length : 0;
 }
 
-// The area that a pair covers [m²], V F / (2 U): of a slab of thickness D over an area V = ∫ D dA,
-// F = 2 c ∫ D dA, U = c ∫ D² dA (against a shape F = c ∫ D dA, U = ½ c ∫ D² dA), so that it is
-// (∫ D dA)² / ∫ D² dA. Exact where D is even, also in squeezed cells; ¾ of the area where D falls to 0
-// linearly. F and U are those of the linear law and of σ = 1, so that it is an area in folded bodies, too.
+// The area that a pair covers [m²], V F / (2 U). Of a slab of thickness D over an area V = ∫ D dA, F = 2 c ∫
+// D dA and U = c ∫ D² dA. Against a shape F = c ∫ D dA and U = ½ c ∫ D² dA. So it is (∫ D dA)² / ∫ D² dA.
+// Exact where D is even, also in squeezed cells; ¾ of the area where D falls to 0 linearly. F and U are those
+// of the linear law and of σ = 1, so that it is an area in folded bodies, too.
 static inline double contact_field_area(const ContactFieldPair *field) {
   double a = field->signs[0], b = field->signs[1];
   if (field->law || a < 0 || b < 0) {

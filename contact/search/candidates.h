@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pairs that may overlap until the next search, interface by interface, and a margin for each interface:
-// by how much its two parties may come nearer before a new search. While no pair is near the margin is the
-// distance of the parties, then half an element, so that no element passes through another between two
-// searches. Motion that two bodies have in common, as in a falling stack, does not use the margin up.
+// The pairs that may overlap until the next search, interface by interface. Each interface has a margin, by
+// which its two parties may come nearer before a new search. While no pair is near the margin is the distance
+// of the parties, then half an element, so that no element passes through another between two searches.
+// Motion that two bodies have in common, as in a falling stack, does not use the margin up.
 #ifndef TETLAP_CONTACT_SEARCH_CANDIDATES_H
 #define TETLAP_CONTACT_SEARCH_CANDIDATES_H
 

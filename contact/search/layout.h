@@ -30,8 +30,8 @@ typedef struct ContactPair {
 } ContactPair;
 
 // General position. The overlap models see each body shifted as a whole by a fixed random nudge of a
-// billionth of the margin. Without it regular meshes meet in planes that coincide, also inside of the bodies,
-// where each pair's ∇V is one-sided and the sides of neighbouring pairs do not fit together: measured on
+// billionth of the margin. Without it regular meshes meet in planes that coincide, also inside of the bodies.
+// There each pair's ∇V is one-sided, and the sides of neighbouring pairs do not fit together: measured on
 // aligned flat slabs, false friction of 5 % (exact) to 15 % (clip) of the normal force; with it 1e-11, and
 // the models agree. U stays an exact function of the positions, only that of bodies that stand a little
 // elsewhere. A body that meets itself is shifted by an affine function of the rest positions, no longer than

@@ -7,10 +7,10 @@
 //   V = Σ_faces ⅓ (d A + sgn(d) R³ Ω),
 //
 // and A, Ω and the first moment of the part inside are sums over the face's edges about the foot of the
-// centre on the plane: triangles where an edge runs inside the circle, sectors where it runs outside (the
-// decomposition of Strobl, Formella and Pöschel 2016, there for general meshes, here for signed pieces, so
-// that no case needs to be told from another). Each term is elementary; the solid angle of a triangle with a
-// right angle at the foot of an edge is that of van Oosterom and Strackee (1983).
+// centre on the plane: triangles where an edge runs inside the circle, sectors where it runs outside. This is
+// the decomposition of Strobl, Formella and Pöschel 2016, there for general meshes. Here pieces have signs,
+// so that no case needs to be told from another. Each term is elementary; the solid angle of a triangle with
+// a right angle at the foot of an edge is that of van Oosterom and Strackee (1983).
 //
 //   ∂V/∂x_a = Σ_faces ∋ a ∫ N_a n dA over the part inside, N_a linear on the face.
 //

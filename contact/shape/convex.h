@@ -10,7 +10,7 @@
 //   V = ⅓ Σ_f n_f·(p_f − o) |P_f| + ⅓ Σ_k n_k·(p_k − o) |Q_k|,
 //
 // ∂V/∂x_a = Σ_{f∋a} n_f ∫_{P_f} β_a dA, β the barycentric coordinates. Every polygon is clipped for itself,
-// so no sign of a distance that is only rounding can tear the surface open: an error ε of a distance moves a
+// so no sign of a distance that is only rounding can tear the surface open. An error ε of a distance moves a
 // polygon's edge by ε.
 #ifndef TETLAP_CONTACT_SHAPE_CONVEX_H
 #define TETLAP_CONTACT_SHAPE_CONVEX_H

@@ -20,8 +20,8 @@ void contact_shape_overlap(const ContactShape *shape, double time, const double 
                            double gradient[12]);
 // Of the potential `field` (contact/pressure/field.h) with c = 1 Pa/m: the overlap V [m³], the energy [m⁴] of
 // a tetrahedron (4, 3) of that rest volume, ∂/∂x of it [m³] and, where not NULL, ∂²/∂x² [m²]. The depth in a
-// ball is (R² − r²)/(2R), in a convex solid the least of those below its planes, in a cylinder the less of
-// (R² − r²)/(2R) from the axis and of that below the nearer end.
+// ball is (R² − r²)/(2R), in a convex solid the least of those below its planes. In a cylinder it is the less
+// of (R² − r²)/(2R) from the axis and of that below the nearer end.
 void contact_shape_press(const ContactShape *shape, double time, const double tet[12], double rest_volume,
                          double *volume, double *energy, double gradient[12], double hessian[144]);
 // The depth of x in the shape, as there [m]; negative outside. And that of its middle, the largest; INFINITY:

@@ -11,7 +11,7 @@
 // is split into four cells at a virtual vertex. Its barycentric coordinates are λ_f = δ / height_f for the
 // outer faces, ¼ for the others, with δ = (number of outer faces / 4) / Σ 1/height_f; its φ is δ, so that the
 // slope is 1 on each outer face. Without an outer face it is the centroid, with its distance. A virtual
-// vertex moves as a fixed mean of the four real ones, so a cell deforms with its tetrahedron, and whatever
+// vertex moves as a fixed mean of the four real ones. So a cell deforms with its tetrahedron, and whatever
 // acts on the cell acts on the four vertices of that.
 //
 // For the potential `nodal` the cells are the tetrahedra.

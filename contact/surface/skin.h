@@ -51,8 +51,8 @@ int contact_skin_edge(const ContactSkin *skin, int a, int b);
 // Lists the faces of a sector, the given one first; at most `most`, how many in all.
 int contact_skin_sector(const ContactSkin *skin, int vertex, int face, int most, int *faces);
 
-// The normal at a vertex over the faces of its sector, any length: each face's cross product of its two edges
-// there over the squares of their lengths (Max 1999, exact on spheres).
+// The normal at a vertex over the faces of its sector, any length. Each face gives the cross product of its
+// two edges there over the squares of their lengths (Max 1999, exact on spheres).
 Vec3 contact_skin_normal(const ContactSkin *skin, int vertex, int count, const int *faces);
 
 // The crease edge other than `edge` at a vertex where two meet and turn by less than the angle; −1: the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The potential `nodal`: contact by volumes alone. It is for a model whose V is a usable function while the
-// centroid that follows from its ∇V is not, such as a network after the paper: the energy is a function of V
+// centroid that follows from its ∇V is not, such as a network after the paper. The energy is a function of V
 // and the forces are its own gradient, so energy is kept whatever V is. There is no friction and no
 // viscosity.
 //
@@ -32,9 +32,9 @@ typedef struct ContactVolumePairs {
   double *forces;            // out: f_ij [N]                          (pair_count, 2, 4, 3)
 } ContactVolumePairs;
 
-// Fills forces, and of `fields` what they mean here: the area is |Σ ∂V/∂x_A|, the area that is covered as
-// seen along the mean normal, depths are V over it, slopes lie along the force, x̄ and the weights are those
-// of the force, and both `weighed` are V.
+// Fills forces, and of `fields` what they mean here. The area is |Σ ∂V/∂x_A|, what is covered as seen along
+// the mean normal; depths are V over it. Slopes lie along the force, x̄ and the weights are those of the
+// force, and both `weighed` are V.
 void contact_volume_press(const ContactLayout *layout, const ContactVolumePairs *pairs);
 
 // The matrix of a pair with that U_ij by the first `count` of its vertices, (3 count, 3 count).

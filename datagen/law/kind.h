@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a pair of a data set is an example of. A kind is a claim about the intersection of the two closed
-// tetrahedra that the generator proves for every pair (proof.h): its dimension, and the dimension of the
+// tetrahedra, which the generator proves for every pair (proof.h). It is the dimension of that, and of the
 // smallest face of either tetrahedron that holds all of it.
 //
 //   dimension   −1 disjoint    0 a point     1 a segment    2 a polygon    3 a common volume

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A face of a quadratic tetrahedron: six nodes, the corners 0, 1, 2, outward, and the middles 3, 4, 5 of the
-// edges 01, 12, 20. Under load it is curved. A pressure p does the work −p dV of the volume that faces bound,
-// so its nodal forces are f_a = −p ∂V/∂x_a = −p ∫ N_a x,ξ × x,η dξ dη: a polynomial of the fourth degree,
-// which six points integrate exactly (Cowper 1973).
+// edges 01, 12, 20. Under load it is curved. A pressure p does the work −p dV of the volume that faces bound.
+// So its nodal forces are f_a = −p ∂V/∂x_a = −p ∫ N_a x,ξ × x,η dξ dη. That is a polynomial of the fourth
+// degree, which six points integrate exactly (Cowper 1973).
 #ifndef TETLAP_FEM_ELEMENT_QUADRATIC_FACE_H
 #define TETLAP_FEM_ELEMENT_QUADRATIC_FACE_H
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The triangles of a tetrahedral mesh in a list where those with the same vertices stand together: a face
-// with one entry is on the surface, with two between neighbours, with more the mesh is not manifold.
+// The triangles of a tetrahedral mesh in a list where those with the same vertices stand together. A face
+// with one entry is on the surface, one with two between neighbours; with more the mesh is not manifold.
 #ifndef TETLAP_FEM_MESH_FACES_H
 #define TETLAP_FEM_MESH_FACES_H
 

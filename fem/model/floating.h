@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The velocity that all bodies have in common and that changes nothing in the scene (Galilean invariance):
-// bodies that float, or that only half-spaces without friction obstruct, move alike in every inertial frame.
+// The velocity that all bodies have in common and that changes nothing in the scene (Galilean invariance).
+// Bodies that float, or that only half-spaces without friction obstruct, move alike in every inertial frame.
 // Whatever a run decides by speeds and energies (tolerances, first steps, the default stiffness, shares of
 // energy and momentum) is relative to it.
 #ifndef TETLAP_FEM_MODEL_FLOATING_H

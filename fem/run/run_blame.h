@@ -5,7 +5,7 @@
 
 #include "fem/run/run_state.h"
 
-// Of a run that fails with `status` and the thread's message: where there are such a pair and a directory,
+// Of a run that fails with `status` and the thread's message. Where there are such a pair and a directory,
 // writes unsound_pair.csv there and says so at the end of the message. Returns `status`.
 Status fem_run_blame_pair(const FemRunState *run, Status status);
 // Removes that of an earlier run.

@@ -4,8 +4,8 @@
 //
 //   FemPattern: vertex cliques ──► FemMatrix: col_begin, row, value (scalar, lower, sorted rows)
 //
-// The unknowns of a vertex stand side by side, so a column is the vertex's own rows followed by runs of one
-// to three rows a neighbour: an entry is found by searching the neighbour, not the row.
+// The unknowns of a vertex stand side by side. So a column is the vertex's own rows followed by runs of one
+// to three rows a neighbour, and an entry is found by searching the neighbour, not the row.
 #ifndef TETLAP_FEM_SPARSE_MATRIX_H
 #define TETLAP_FEM_SPARSE_MATRIX_H
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Newton's method on f(u, t) = 0 with a line search on the work that the force does along a step: the work
 // changes its sign where the step overshoots. So it converges even where |f| does not decrease along the way,
-// as where many vertices change between stick and slip: there the force has a kink, and the matrix lacks a
+// as where many vertices change between stick and slip. There the force has a kink, and the matrix lacks a
 // part.
 #ifndef TETLAP_FEM_STATICS_DESCENT_H
 #define TETLAP_FEM_STATICS_DESCENT_H

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whitening of a network's inputs: w = M (f − mean), M fitted so that over the samples the components of w
+// Whitening of a network's inputs: w = M (f − mean). M is fitted so that over the samples the components of w
 // are uncorrelated with unit variance: standardise, rotate to the principal axes, divide by √(λ + 1e-6).
 // Training sees w; the trained network takes f, with M and mean folded into its first layer. In double:
 // directions of tiny variance are blown up by up to 1e3, so folded weights cancel; a folded network should be

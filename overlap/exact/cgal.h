@@ -3,7 +3,7 @@
 // closed tetrahedra meet; a Boolean intersection of two Nef_polyhedron_3 over exact rational coordinates
 // gives the polyhedron, PMP::volume its volume. A common part without interior is V = 0, DISJOINT.
 //
-// The gradient is added by us: each facet of the intersection is attributed to the input face whose plane it
+// The gradient is added by us. Each facet of the intersection is attributed to the input face whose plane it
 // lies in, found exactly, and N_a is integrated over it in rational numbers. Facets that lie in faces of both
 // count half for each, the convention of overlap/exact/exact.h. V and ∇V are correctly rounded to within 1
 // ulp.

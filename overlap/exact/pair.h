@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A pair of tetrahedra as integers, with the 68 brackets [w x y z] = det(x − w, y − w, z − w) that decide
-// everything about their intersection: 16 + 16 vertices against face planes and 36 edges against edges.
-// All three are of degree 3 in the coordinates. That they suffice is Cramer's rule: with
-// α_k(x) = [a with a_k replaced by x] (D times the barycentric coordinate k of x in the tetrahedron a, so
-// α_k(x) ≥ 0 on the inner side of face k, which lies opposite to a_k), complementary pairs (i j), (m n) and
-// ε the sign of the permutation (i j m n),
+// everything about their intersection: 16 + 16 vertices against face planes and 36 edges against edges. All
+// three are of degree 3 in the coordinates. That they suffice is Cramer's rule. Let α_k(x) = [a with a_k
+// replaced by x], which is D times the barycentric coordinate k of x in the tetrahedron a. So α_k(x) ≥ 0 on
+// the inner side of face k, which lies opposite to a_k. With complementary pairs (i j), (m n) and ε the sign
+// of the permutation (i j m n),
 //
 //     α_m(p) α_n(q) − α_n(p) α_m(q) = ε D [a_i a_j p q].
 //

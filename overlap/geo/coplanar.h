@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs with faces that nearly lie in one plane, which a smooth V cannot answer.
 //
-// Where face k of one tetrahedron passes through the plane of face l of the other, parallel to it, V has a
+// Face k of one tetrahedron may pass through the plane of face l of the other, parallel to it. There V has a
 // kink: it grows with the distance on one side only. In a mesh the kinks of neighbouring pairs cancel. A
-// smooth V has none on the one side (the faces look the same way: the pair keeps its volume) but has the
-// other's (they look at each other: an overlap begins as a slice), so the sum over a mesh gets a cusp that
-// pulls coinciding planes inside of the bodies together; measured on two blocks of aligned cubes, a side
-// force of half the lateral area. So such pairs turn to the exact volume, smoothly, by the share
+// smooth V has none where the faces look the same way, and the pair keeps its volume. It has that of faces
+// that look at each other, where an overlap begins as a slice. So the sum over a mesh gets a cusp, which
+// pulls coinciding planes inside of the bodies together. On two blocks of aligned cubes that was a side force
+// of half the lateral area. Therefore such pairs turn to the exact volume, smoothly, by the share
 //
 //     w = 1 − Π_kl (1 − w_kl),   w_kl = (1 − r_kl / r₀)³ where r_kl < r₀, else 0,
 //     r_kl = |q_k ∓ q_l|² / (P_kk P_ll),

@@ -13,9 +13,9 @@
 
 typedef struct OverlapGeoNet OverlapGeoNet; // opaque: parameters, and memory of evaluation for every thread
 
-// STATUS_INPUT: no weights file, or one of another kind: a dense SiLU network with as many inputs as a set
-// has features is wanted, with one output, or with as many more as a plane has features, which give the
-// centroid. The message names the file.
+// STATUS_INPUT: no weights file, or one of another kind. A dense SiLU network with as many inputs as a set
+// has features is wanted, with one output. As many more as a plane has features give the centroid. The
+// message names the file.
 Status overlap_geo_network_create(OverlapGeoNet **net, const char *path);
 // The same of a network that gives a bound of another's error: it has one output, and its card says so.
 Status overlap_geo_network_create_bound(OverlapGeoNet **net, const char *path);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Invariants of the overlap volume V of two tetrahedra and its gradient, whatever the model: by how much a
-// result violates each, relative to the pair's own size, so that each model can have its own tolerance. A NaN
-// stays a NaN. Pairs x (2, 4, 3) [m].
+// Invariants of the overlap volume V of two tetrahedra and its gradient, whatever the model. By how much a
+// result violates each is relative to the pair's own size, so that each model can have its own tolerance. A
+// NaN stays a NaN. Pairs x (2, 4, 3) [m].
 #ifndef TETLAP_OVERLAP_PAIR_INVARIANT_H
 #define TETLAP_OVERLAP_PAIR_INVARIANT_H
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What pairs a model was made for, in three measures of a pair: for a TetrahedronPairNet of a normalised one
-// (overlap/tpn/normalise.h), for a model of the user's of the pair as it stands.
+// What pairs a model was made for, in three measures of a pair. For a TetrahedronPairNet it is a normalised
+// one (overlap/tpn/normalise.h), for a model of the user's the pair as it stands.
 //
 //   radius   root mean square distance of the eight vertices from the first tetrahedron's centroid
 //   volume   of each of the two tetrahedra (with Unit the first is 1/6 always)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that carry their derivatives by the few quantities that the answer for a pair is made of
-// (blend.h), so that a formula is written once and its first and second derivatives follow.
+// Numbers that carry their derivatives by the few quantities that the answer for a pair is made of (blend.h).
+// A formula is written once, and its first and second derivatives follow.
 //
 //     (a b)′ = a′ b + a b′,   (a b)″ = a″ b + a′ b′ᵀ + b′ a′ᵀ + a b″,   f(a)″ = f′ a″ + f″ a′ a′ᵀ
 #ifndef TETLAP_OVERLAP_TPN_JET_H

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A body's surface as smooth as the body is meant to be, of linear tetrahedra: for contact alone, edges and
+// A body's surface as smooth as the body is meant to be, of linear tetrahedra. For contact alone, edges and
 // faces on a curved surface are divided, and the new points lie on a surface estimated from the mesh.
 //
 // An edge between two faces that make less than the crease angle is divided into 2^level parts at points that

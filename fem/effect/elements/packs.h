@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The linear or the quadratic elements of a model in packs for vector lanes (fem/lanes/lanes.h), so ordered
-// that what is near in space is near in memory: along a Morton curve, in chunks of some packs of one part of
-// a body. Chunks are coloured: those of a colour share no vertex and may be added at the same time. Within a
-// chunk elements are added one after another, so every sum has a fixed order.
+// The linear or the quadratic elements of a model in packs for vector lanes (fem/lanes/lanes.h). What is near
+// in space is near in memory: they follow a Morton curve, in chunks of some packs of one part of a body.
+// Chunks are coloured: those of a colour share no vertex and may be added at the same time. Within a chunk
+// elements are added one after another, so every sum has a fixed order.
 #ifndef TETLAP_FEM_EFFECT_ELEMENTS_PACKS_H
 #define TETLAP_FEM_EFFECT_ELEMENTS_PACKS_H
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Derivatives dg/dp at the end of a path of steps, where the last state alone does not tell them: of a
-// motion, of a static scene with friction or following pressures. They are those of a replay
+// Derivatives dg/dp at the end of a path of steps, where the last state alone does not tell them. So it is of
+// a motion, and of a static scene with friction or following pressures. They are those of a replay
 // (fem/gradient/path/replay.h), by its discrete adjoint. Backwards, with λ = −β, s_n = M (a₁ β_{n+1} + a₂
 // β_{n+2}), whose coefficients are those of steps n + 1, n + 2, J = −∂f/∂u, D = −∂f/∂v, which is symmetric,
 // and q what friction remembers after a step (contact/friction/stick_pull.h). u are positions, and u_0 where

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The header of a mesh file, checked before gmsh reads it: gmsh takes a truncated MEDIT file for a smaller
+// The header of a mesh file, checked before gmsh reads it. gmsh takes a truncated MEDIT file for a smaller
 // mesh, leaves out elements that it does not know, and runs a file without a known beginning as a script.
 #ifndef TETLAP_FEM_MESH_READER_HEADER_H
 #define TETLAP_FEM_MESH_READER_HEADER_H

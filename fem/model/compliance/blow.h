@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An upper bound of the energy with which a body may strike another, from the scene alone: what it has at the
-// start and what gravity gives it on its way down.
+// An upper bound of the energy with which a body may strike another, from the scene alone. It is what the
+// body has at the start and what gravity gives it on its way down.
 //
 // A body falls from its own lowest point to the lowest point of all other bodies and obstacles: to where it
 // meets a half-space, to the centre of a ball, a box or a cylinder. It falls no farther than it can until the

@@ -2,9 +2,9 @@
 // One frame of a run as a VTK XML unstructured grid (.vtu): arrays compressed by zlib in blocks, as base64
 // text in their elements ("VTK XML Formats" in the VTK documentation).
 //
-// Not as appended data, which would be a quarter smaller: the ParaView 5.11 of Debian 12 cannot read those
-// together with Debian's expat, whose security update (CVE-2023-52425) reports tokens later than its VTK
-// expects. Text in the elements is plain XML that every reader takes.
+// Not as appended data, which would be a quarter smaller: the ParaView 5.11 of Debian 12 cannot read those.
+// Debian's expat, since its security update (CVE-2023-52425), reports tokens later than that VTK expects.
+// Text in the elements is plain XML that every reader takes.
 #ifndef TETLAP_FEM_OUTPUT_VTK_VTU_H
 #define TETLAP_FEM_OUTPUT_VTK_VTU_H
 

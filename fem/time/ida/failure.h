@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Failures on their way through IDA: a Status into the integer that a callback answers, and IDA's flag for a
-// step that failed into a reason and the unknown where it is worst.
+// Failures on their way through IDA. A Status becomes the integer that a callback answers, IDA's flag for a
+// step that failed a reason and the unknown where it is worst.
 #ifndef TETLAP_FEM_TIME_IDA_FAILURE_H
 #define TETLAP_FEM_TIME_IDA_FAILURE_H
 
@@ -25,9 +25,9 @@ int fem_ida_failure_answer(FemIdaFailure *failure, Status status);
 // What a flag of IDASolve below 0 means, and what may help.
 FemReason fem_ida_failure_reason(int flag);
 
-// The number among the 2·part->n of the unknown with the largest estimated error if the error test failed
-// (IDA_ERR_FAIL), with the largest value beside its tolerance if that is finer than the value's digits
-// (IDA_TOO_MUCH_ACC), else with the largest unbalanced force; 0: IDA does not say. By all ranks. `errors`,
+// The number among the 2·part->n of the unknown to blame: with the largest estimated error if the error test
+// failed (IDA_ERR_FAIL); with the largest value beside its tolerance if that is finer than the value's digits
+// (IDA_TOO_MUCH_ACC); else with the largest unbalanced force. 0: IDA does not say. By all ranks. `errors`,
 // `weights`: scratch.
 int fem_ida_failure_worst(void *ida, int flag, const FemPart *part, N_Vector errors, N_Vector weights);
 

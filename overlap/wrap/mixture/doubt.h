@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// `hybrid` of a model that tells its doubt B, how far its V may be off, the range of pairs that it was made
-// for, or both: V and x̄ turn to those of clipping where B is not small beside V, as hybrid/share.h has it,
-// and beyond the range. With d the share by the doubt, and w the weights of the pair and of V in the range
+// `hybrid` of a model that tells its doubt B, how far its V may be off, or the range of pairs that it was
+// made for, or both. V and x̄ turn to those of clipping beyond the range, and where B is not small beside V
+// (hybrid/share.h). With d the share by the doubt, and w the weights of the pair and of V in the range
 // (pair/range.h), the share of clipping is
 //
 //     c = 1 − (1 − d) w(x) w(V).
