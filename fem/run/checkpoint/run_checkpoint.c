@@ -53,12 +53,13 @@ long long fem_run_checkpoint_steps(int unknown_count) {
 }
 
 // The first checkpoints come sooner, after 2, 8 and 32 % of the time, so that what is stopped early does not
-// begin at the start again. Time is asked, not frames: a run does not depend on how many frames are written.
+// begin at the start again; none in the last half, where that is all but done. Time is asked, not frames: a
+// run does not depend on how many frames are written.
 static const double EARLY_SHARE = 0.02, EARLY_GROWTH = 4;
 enum { EARLY_STEPS = 20 };
 static bool is_early(const FemRunState *run) {
   double last = run->checkpoint.time, end = run->model->scene->end;
-  return run->time >= (last > 0 ? EARLY_GROWTH * last : EARLY_SHARE * end);
+  return run->time >= (last > 0 ? EARLY_GROWTH * last : EARLY_SHARE * end) && 2 * run->time <= end;
 }
 
 // A checkpoint restarts the integrator at order 1, which follows an impact less well: a landing's impulse by

@@ -60,7 +60,7 @@ START_TEST(enough_are_a_million_steps_times_unknowns_and_two_hundred_at_least) {
 END_TEST
 
 // The first at 2 % of the time, others at four times the time of the one before, and none in fewer than
-// twenty steps.
+// twenty steps or in the last half.
 START_TEST(early_in_a_run_they_come_sooner) {
   Course course;
   const struct {
@@ -68,7 +68,8 @@ START_TEST(early_in_a_run_they_come_sooner) {
     long long steps;
     bool is_due;
   } rows[] = {{0, 0.02, 20, true},    {0, 0.0199, 20, false},    {0, 0.02, 19, false},
-              {0.03, 0.12, 20, true}, {0.03, 0.1199, 20, false}, {0.03, 0.12, 19, false}};
+              {0.03, 0.12, 20, true}, {0.03, 0.1199, 20, false}, {0.03, 0.12, 19, false},
+              {0.1, 0.5, 20, true},   {0.1, 0.5001, 20, false}};
   for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
     start(&course, 1000, rows[k].last, rows[k].time, rows[k].steps);
     ck_assert_msg(is_due(&course, 2) == rows[k].is_due, "row %zu", k);
