@@ -334,9 +334,6 @@ static Status check_shapes(const FemModel *model, const FemGradientDef *def) {
   if (!is_asked) return STATUS_OK;
   if (fem_gradient_yields(model))
     return status_fail(STATUS_INPUT, "with plasticity there is no derivative by a body's shape");
-  if (fem_gradient_has_friction(model) && !(scene->contact.stiffness > 0))
-    return status_fail(STATUS_INPUT, "with friction there is no derivative by a body's shape where contact's "
-                                     "stiffness is chosen: give contact.stiffness its value");
   if (meets_itself || model->start)
     return status_fail(STATUS_INPUT, "by a body's shape there is no derivative %s",
                        meets_itself ? "with self_contact" : "of a run that goes on from another");

@@ -176,7 +176,7 @@ static Status add_bulk(FemShape *shape, const FemModel *model, const FemState *s
   return STATUS_OK;
 }
 
-// Sums of contact's forces of all interfaces, with the stiffness that the tangent's have.
+// Sums of contact's forces of all interfaces.
 static Status sum_contact(const FemTangent *tangent, void *effect, double *forces, double *energies) {
   const FemState *state = tangent->state;
   ContactSystem *system = fem_effect_contact_system(effect);
@@ -186,12 +186,9 @@ static Status sum_contact(const FemTangent *tangent, void *effect, double *force
   TRY(contact_evaluate(system, 0, state->time, state->positions, &evaluation));
   for (int i = 0; i < tangent->interface_count; i++) {
     double *force = forces + values * (size_t)i;
-    const ContactInterfaceDef *own = fem_tangent_interface(tangent, i);
-    double kept = own->law ? 1 : own->stiffness / contact_system_layout(system)->interfaces[i].stiffness;
     memset(force, 0, values * sizeof *force);
     contact_system_add_force_of(system, evaluation, i, force);
-    for (size_t k = 0; k < values; k++) force[k] *= kept;
-    energies[i] = kept * contact_system_energy_of(evaluation, i);
+    energies[i] = contact_system_energy_of(evaluation, i);
   }
   return STATUS_OK;
 }
@@ -222,9 +219,8 @@ static Status create_side(Side *side, const FemTangent *tangent) {
 }
 
 // Friction of bodies of another shape that remember the same.
-static Status rub(const FemTangent *tangent, const FemSystem *system, Side *side) {
+static Status rub(const FemTangent *tangent, void *stick, Side *side) {
   const FemState *state = tangent->state;
-  void *stick = fem_system_effect(system, &fem_effect_stick);
   size_t values = 3 * (size_t)tangent->system->model->vertex_count;
   const ContactStick *law;
   TRY(fem_effect_stick_evaluate(stick, state, &law));
@@ -233,24 +229,28 @@ static Status rub(const FemTangent *tangent, const FemSystem *system, Side *side
   return fem_effect_stick.advance(stick, state, &side->history);
 }
 
+// Friction on that contact; of the system all else stays.
+static Status rub_between(const FemTangent *tangent, const FemModel *model, void *contact, Side *side) {
+  FemSystem system = *tangent->system;
+  void *stick = NULL;
+  TRY(fem_effect_stick.create(&stick, model));
+  system.effects[fem_system_place(&system, &fem_effect_contact)].self = contact;
+  system.effects[fem_system_place(&system, &fem_effect_stick)].self = stick;
+  Status status = fem_effect_stick.connect(stick, &system);
+  if (!status) status = rub(tangent, stick, side);
+  fem_effect_stick.destroy(stick);
+  return status;
+}
+
 static Status evaluate_between(const FemTangent *tangent, const FemModel *model, Side *side) {
-  void *effect = NULL;
-  FemSystem system = {0};
-  Status status;
-  if (tangent->stick) {
-    status = fem_system_create(&system, model);
-    if (!status) effect = fem_system_effect(&system, &fem_effect_contact);
-  } else {
-    status = fem_effect_contact.create(&effect, model);
-  }
-  if (!status) status = sum_contact(tangent, effect, side->pressing, side->energies);
+  void *contact = NULL;
+  TRY(fem_effect_contact_create_like(&contact, model,
+                                     fem_system_effect(tangent->system, &fem_effect_contact)));
+  Status status = sum_contact(tangent, contact, side->pressing, side->energies);
   size_t all = 3 * (size_t)model->vertex_count * (size_t)tangent->interface_count;
   memcpy(side->forces, side->pressing, all * sizeof *side->forces);
-  if (!status && tangent->stick) status = rub(tangent, &system, side);
-  if (tangent->stick)
-    fem_system_destroy(&system);
-  else if (effect)
-    fem_effect_contact.destroy(effect);
+  if (!status && tangent->stick) status = rub_between(tangent, model, contact, side);
+  fem_effect_contact.destroy(contact);
   return status;
 }
 

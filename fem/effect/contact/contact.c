@@ -130,7 +130,7 @@ Status fem_effect_contact_check_overlap(const FemSceneDef *scene, const char *na
           : "");
 }
 
-static Status build(Contact *contact) {
+static Status build(Contact *contact, const FemCompliance *choice) {
   const FemModel *model = contact->model;
   const FemContactDef *def = &model->scene->contact;
   TRY(fem_effect_contact_create_overlap(model->scene, NULL, &contact->overlap));
@@ -140,15 +140,9 @@ static Status build(Contact *contact) {
   contact->shapes = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->shapes);
   contact->solids = memory_zeroed((size_t)model->scene->obstacle_count, sizeof *contact->solids);
   if (!contact->bodies || !contact->shapes || !contact->solids) return status_no_memory("the contact bodies");
-  FemCompliance choice;
   const ContactLaw **laws;
   TRY(fem_laws_create(model, &laws));
-  Status status = fem_compliance_choose(model, &choice);
-  if (status) {
-    memory_free(laws);
-    return status;
-  }
-  list_sides(contact, &choice);
+  list_sides(contact, choice);
   ContactSystemDef system = {.vertex_count = model->vertex_count,
                              .rest = model->rest,
                              .tets = (const int(*)[4])model->tets,
@@ -162,26 +156,51 @@ static Status build(Contact *contact) {
                              .crease = def->crease * RADIANS,
                              .potential = def->potential,
                              .stiffness = fem_model_contact_stiffness(model),
-                             .pair_stiffness = choice.stiffness,
+                             .pair_stiffness = choice->stiffness,
                              .pair_laws = laws,
                              .margin = def->margin,
                              .model = &contact->overlap};
-  status = contact_system_create(&contact->system, &system);
-  fem_compliance_destroy(&choice);
+  Status status = contact_system_create(&contact->system, &system);
   memory_free(laws);
   return status;
 }
 
-static Status create(void **self, const FemModel *model) {
+static Status create_with(void **self, const FemModel *model, const FemCompliance *choice) {
   Contact *contact = memory_zeroed(1, sizeof *contact);
   if (!contact) return status_no_memory("contact");
   contact->model = model;
   contact->reach = COUPLING_REACH * model->edge;
-  Status status = build(contact);
+  Status status = build(contact, choice);
   if (status)
     destroy(contact);
   else
     *self = contact;
+  return status;
+}
+
+static Status create(void **self, const FemModel *model) {
+  FemCompliance choice;
+  TRY(fem_compliance_choose(model, &choice));
+  Status status = create_with(self, model, &choice);
+  fem_compliance_destroy(&choice);
+  return status;
+}
+
+Status fem_effect_contact_create_like(void **self, const FemModel *model, const void *of) {
+  const Contact *contact = of;
+  const ContactLayout *layout = contact_system_layout(contact->system);
+  size_t bodies = (size_t)model->body_count, parties = bodies + (size_t)contact->shape_count;
+  FemCompliance choice = {.party_count = (int)parties,
+                          .stiffness = memory_zeroed(bodies * parties, sizeof *choice.stiffness),
+                          .levels = memory_zeroed(bodies, sizeof *choice.levels)};
+  Status status = choice.stiffness && choice.levels ? STATUS_OK : status_no_memory("contact");
+  for (int i = 0; i < layout->interface_count && !status; i++) {
+    const ContactInterfaceDef *interface = &layout->interfaces[i];
+    choice.stiffness[(size_t)interface->a * parties + (size_t)interface->b] = interface->stiffness;
+  }
+  for (size_t b = 0; b < bodies && !status; b++) choice.levels[b] = contact->bodies[b].smooth;
+  if (!status) status = create_with(self, model, &choice);
+  fem_compliance_destroy(&choice);
   return status;
 }
 

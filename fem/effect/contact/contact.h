@@ -7,6 +7,10 @@
 #include "fem/effect/system.h"
 #include "fem/scene/scene.h"
 
+// Contact of a model that has the same bodies in another shape, with the stiffness and the smoothness of
+// surfaces that the effect `of` has. Destroy it as the effect's operations say.
+Status fem_effect_contact_create_like(void **self, const FemModel *model, const void *of);
+
 // The contact system of the effect that fem_system_effect(system, &fem_effect_contact) returned; borrowed.
 ContactSystem *fem_effect_contact_system(void *effect);
 // Pairs of cells closer than this are laid out in the matrix ahead, where effects were renewed [m].

@@ -129,7 +129,6 @@ static void expect_refusal(const char *scene, const char *setting, const char *o
 
 START_TEST(what_has_no_derivative_by_shape_is_refused) {
   const char *up = "displacement:upper:z";
-  expect_refusal("gradient_chosen", "contact.friction=0.1", up, UPPER "scale", "contact.stiffness");
   expect_refusal("gradient_yield", NULL, up, UPPER "scale", "plasticity");
   expect_refusal("gradient_blocks", NULL, "pressure:patch", UPPER "scale", "patch:PROBE");
   expect_refusal("gradient_blocks", "bodies.upper.self_contact=true", up, UPPER "scale", "self_contact");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Derivatives by the shape of bodies with friction and following pressures against central differences of
 // replays with the same steps.
+#include "fem/model/compliance/compliance.h"
 #include "replays.h"
 
 #define UPPER "bodies.upper.place."
@@ -55,11 +56,46 @@ START_TEST(bodies_under_following_pressures_agree_by_scale_with_differences_of_r
 }
 END_TEST
 
+static void differentiate(const char *contact, double derivatives[2]) {
+  const Asked asked = {.scene = "gradient_chosen",
+                       .setting = contact,
+                       .of = {"displacement:upper:z", "force:upper:lower:x"},
+                       .by = {UPPER "scale"}};
+  FemReplaySteps steps;
+  Answer answer;
+  find_steps(&asked, &steps);
+  replay(&asked, &steps, NULL, true, &answer);
+  memcpy(derivatives, answer.gradient.derivatives, 2 * sizeof *derivatives);
+  destroy(&answer);
+  fem_replay_steps_destroy(&steps);
+}
+
+// The springs of friction follow that stiffness.
+START_TEST(a_stiffness_that_is_chosen_is_kept) {
+  double chosen[2], given[2];
+  SceneRun scene;
+  FemCompliance choice;
+  char setting[128];
+  scene_open(&scene, "gradient_chosen", (const char *const[]){NULL});
+  ck_assert_ok(fem_compliance_choose(&scene.model, &choice));
+  snprintf(setting, sizeof setting, "contact={stiffness: %.17g, friction: 0.2}", choice.stiffness[1]);
+  fem_compliance_destroy(&choice);
+  scene_close(&scene);
+  differentiate("contact.friction=0.2", chosen);
+  differentiate(setting, given);
+  for (int g = 0; g < 2; g++) {
+    ck_assert_double_ne(chosen[g], 0);
+    ck_assert_near(given[g] / chosen[g], 1, 1e-6);
+  }
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("gradient_shape_friction");
   tcase_add_test(test_case, rubbed_blocks_agree_by_scale_with_differences_of_replays);
   tcase_add_test(test_case, a_slab_between_obstacles_agrees_by_scale_with_differences_of_replays);
   tcase_add_test(test_case, a_thrown_block_that_sticks_and_slips_agrees_by_scale_with_differences_of_replays);
   tcase_add_test(test_case, bodies_under_following_pressures_agree_by_scale_with_differences_of_replays);
+  tcase_add_test(test_case, a_stiffness_that_is_chosen_is_kept);
   return suite_run("gradient_shape_friction", test_case, 300);
 }
