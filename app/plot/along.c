@@ -96,7 +96,7 @@ static Status open_source(Source *source, const char *directory, const char *lab
   if (!status && source->frames.count == 0)
     status = status_fail(STATUS_INPUT,
                          "%s: has no frames to plot along a path; give the DIR of `tetlap run SCENE -o DIR` "
-                         "with output.vtu: true",
+                         "with output.vtu: true (lines_NNNNN.csv are read by other programs)",
                          directory);
   if (status) close_source(source);
   return status;

@@ -28,10 +28,12 @@ static void read_path(struct argp_state *state, void *member, char *text) {
   bool is_one = app_plot_path_read(path, text);
   path->within = within;
   if (!is_one)
-    argp_error(state,
-               "--along is '%s'; give x, y or z, radius:AXIS (of an axis through the origin), "
-               "radius:AXIS:X,Y,Z (through a point), or the ends of a line, as in 0,0,0:0,0,1",
-               text);
+    argp_error(
+        state,
+        "--along is '%s'; give x, y or z, radius:AXIS (of an axis through the origin), "
+        "radius:AXIS:X,Y,Z (through a point), or the ends of a line, as in 0,0,0:0,0,1; of a line of "
+        "bodies[].lines its from and to (its points, which move with the body, are in lines_NNNNN.csv)",
+        text);
 }
 
 static void read_times(struct argp_state *state, void *member, char *text) {
@@ -49,7 +51,9 @@ static const AppOption option_table[] = {
     {"along", 0, "PATH",
      "Draw a quantity of the frames at the vertices of surfaces over x, y or z, over the distance from an "
      "axis "
-     "(radius:z, or radius:z:X,Y,Z through a point), or where a line runs through elements (X,Y,Z:X,Y,Z)",
+     "(radius:z, or radius:z:X,Y,Z through a point), or where a line runs through elements (X,Y,Z:X,Y,Z), at "
+     "places of that frame: bodies[].lines, "
+     "whose points move with the body, are in lines_NNNNN.csv",
      1, CLI_OWN, CLI_TO(Options, along.path), .read = read_path, .mark_offset = offsetof(Options, is_along)},
     {"of", 0, "ARRAY[:COMPONENT]",
      "What --along draws, as contact_pressure or stress:zz; of a vector without x, y or z its length", 1,

@@ -190,8 +190,8 @@ static Status read_cells(const char *text, FemVtuContent *content) {
   Element connectivity, offsets, types;
   TRY(find_section(&text, "Cells", &limit));
   if (!(text = next_element(text, limit, &connectivity)) || strcmp(connectivity.name, "connectivity") != 0 ||
-      !(text = next_element(text, limit, &offsets)) || !next_element(text, limit, &types) ||
-      strcmp(types.name, "types") != 0)
+      !(text = next_element(text, limit, &offsets)) || strcmp(offsets.name, "offsets") != 0 ||
+      !next_element(text, limit, &types) || strcmp(types.name, "types") != 0)
     return refuse("the cells lack connectivity, offsets or types");
   TRY(read_types(&types, content));
   const size_t count = (size_t)content->cell_count * (size_t)fem_vtu_corner_count(content->cell);

@@ -386,6 +386,38 @@ START_TEST(triangles_read_back_as_triangles_and_a_mixture_is_refused) {
 }
 END_TEST
 
+// Arrays that are named as those of the cells do not stand for them, nor the cells' for them.
+START_TEST(a_name_of_the_cells_is_as_good_as_any) {
+  static const int marks[4] = {9, 8, 7, 6}, mark = 5;
+  const FemVtuArray arrays[] = {
+      {.name = "offsets", .components = 1, .integers = marks},
+      {.name = "connectivity", .is_cell = true, .components = 1, .integers = &mark}};
+  FemVtuFrame frame = single_tetrahedron();
+  frame.arrays = arrays, frame.array_count = 2;
+  ck_assert_ok(fem_vtu_write(path, &frame));
+  FemVtuContent content;
+  ck_assert_ok(fem_vtu_read(path, &content));
+  ck_assert_int_eq(content.field_count, 2);
+  for (int v = 0; v < 4; v++) ck_assert_double_eq(content.fields[0].values[v], marks[v]);
+  ck_assert_double_eq(content.fields[1].values[0], mark);
+  ck_assert_mem_eq(content.cells, one_tet, sizeof one_tet);
+  fem_vtu_read_destroy(&content);
+
+  // Cells whose second array is not the ends of each are no frame of ours.
+  char *text, *at;
+  size_t size;
+  ck_assert_ok(file_read(path, &text, &size));
+  at = strstr(strstr(text, "<Cells>"), "offsets");
+  memcpy(at, "offsetz", 7);
+  FileWriter writer;
+  ck_assert_ok(file_begin(&writer, path));
+  fwrite(text, 1, size, writer.stream);
+  ck_assert_ok(file_commit(&writer));
+  memory_free(text);
+  ck_assert_int_eq(fem_vtu_read(path, &content), STATUS_INPUT);
+}
+END_TEST
+
 START_TEST(a_name_cannot_break_the_xml) {
   const double four[4] = {1, 2, 3, 4};
   const FemVtuArray array = {.name = "a<b & \"c\">", .components = 1, .reals = four};
@@ -550,6 +582,7 @@ int main(void) {
   tcase_add_test(cases, components_have_their_names);
   tcase_add_test(cases, a_frame_that_announces_more_than_it_can_hold_is_refused);
   tcase_add_test(cases, triangles_read_back_as_triangles_and_a_mixture_is_refused);
+  tcase_add_test(cases, a_name_of_the_cells_is_as_good_as_any);
   tcase_add_test(cases, a_name_cannot_break_the_xml);
   tcase_add_test(cases, the_bytes_do_not_depend_on_the_number_of_threads);
   tcase_add_test(cases, every_failed_allocation_is_an_error_that_leaves_the_old_frame);
