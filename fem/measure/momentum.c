@@ -17,16 +17,24 @@ Status fem_momentum_create(FemMomentum *momentum, FemSystem *system) {
   *momentum = (FemMomentum){.system = system, .body_count = (int)bodies};
   momentum->now = memory_zeroed(bodies, sizeof *momentum->now);
   momentum->next = memory_zeroed(bodies, sizeof *momentum->next);
+  momentum->motions = memory_zeroed(bodies, sizeof *momentum->motions);
+  momentum->groups = memory_zeroed(bodies, sizeof *momentum->groups);
+  momentum->next_groups = memory_zeroed(bodies, sizeof *momentum->next_groups);
   bool has_loads = system->model->load_count > 0;
   if (has_loads) momentum->loads = memory_zeroed(3 * (size_t)system->model->vertex_count, sizeof(double));
-  return momentum->now && momentum->next && (!has_loads || momentum->loads)
-             ? STATUS_OK
-             : status_no_memory("the balance of momentum");
+  bool is_there = momentum->now && momentum->next && momentum->motions && momentum->groups &&
+                  momentum->next_groups && (!has_loads || momentum->loads);
+  if (!is_there) return status_no_memory("the balance of momentum");
+  for (int b = 0; b < momentum->body_count; b++) momentum->groups[b] = b;
+  return STATUS_OK;
 }
 
 void fem_momentum_destroy(FemMomentum *momentum) {
   memory_free(momentum->now);
   memory_free(momentum->next);
+  memory_free(momentum->motions);
+  memory_free(momentum->groups);
+  memory_free(momentum->next_groups);
   memory_free(momentum->loads);
   *momentum = (FemMomentum){0};
 }
@@ -68,14 +76,25 @@ static double speed_of_obstacle(const FemMomentum *momentum, const FemState *sta
   return vec3_length(sum) / (body->vertex_end - body->vertex_begin);
 }
 
+static int group_of(const int *groups, int body) {
+  while (groups[body] != body) body = groups[body];
+  return body;
+}
+
+static void join(int *groups, int a, int b) {
+  int first = group_of(groups, a), second = group_of(groups, b);
+  groups[first > second ? first : second] = first < second ? first : second;
+}
+
 static void add_contact(const FemMomentum *momentum, const FemState *state, const ContactInterface *interface,
-                        Vec3 force, FemMomentumBody *bodies) {
+                        Vec3 force, FemMomentumBody *bodies, int *groups) {
   FemMomentumBody *a = &bodies[interface->a];
   if (interface->a == interface->b || interface->a >= momentum->body_count) return;
   add(a, force);
-  if (interface->b < momentum->body_count)
+  if (interface->b < momentum->body_count) {
     add(&bodies[interface->b], vec3_scale(-1, force));
-  else if (vec3_length(force) > 0)
+    if (vec3_length(force) > 0) join(groups, interface->a, interface->b);
+  } else if (vec3_length(force) > 0)
     a->driven = fmax(a->driven, speed_of_obstacle(momentum, state, interface));
 }
 
@@ -120,9 +139,9 @@ static Status add_reactions(const FemMomentum *momentum, const FemState *state, 
   return STATUS_OK;
 }
 
-// Momenta and forces; zero for bodies that sleep.
+// Momenta and forces; zero for bodies that sleep. Joins groups that press each other.
 static Status measure(FemMomentum *momentum, const FemState *state, const FemMomentumContact *contact,
-                      FemMomentumBody *bodies) {
+                      FemMomentumBody *bodies, int *groups) {
   const FemModel *model = momentum->system->model;
   for (int b = 0; b < momentum->body_count; b++) {
     for (int c = 0; c < 3; c++) bodies[b].p[c] = bodies[b].force[c] = 0;
@@ -131,7 +150,8 @@ static Status measure(FemMomentum *momentum, const FemState *state, const FemMom
     add_gravity(model, &model->bodies[b], &bodies[b]);
   }
   for (int i = 0; i < contact->count; i++)
-    add_contact(momentum, state, &contact->interfaces[i], vec3_at(contact->forces[i]), bodies);
+    add_contact(momentum, state, &contact->interfaces[i], vec3_at(contact->forces[i]), bodies, groups);
+  for (int b = 0; b < momentum->body_count; b++) groups[b] = group_of(groups, b);
   TRY(add_loads(momentum, state, bodies));
   TRY(add_reactions(momentum, state, bodies));
   for (int b = 0; b < momentum->body_count; b++) {
@@ -146,9 +166,14 @@ static void copy(const FemMomentum *momentum, const FemMomentumBody *from, FemMo
   memcpy(to, from, (size_t)momentum->body_count * sizeof *to);
 }
 
+static void copy_groups(const FemMomentum *momentum, const int *from, int *to) {
+  memcpy(to, from, (size_t)momentum->body_count * sizeof *to);
+}
+
 Status fem_momentum_begin(FemMomentum *momentum, const FemState *state, const FemMomentumContact *contact) {
-  TRY(measure(momentum, state, contact, momentum->now));
+  TRY(measure(momentum, state, contact, momentum->now, momentum->groups));
   copy(momentum, momentum->now, momentum->next);
+  copy_groups(momentum, momentum->groups, momentum->next_groups);
   momentum->time = momentum->next_time = state->time;
   return STATUS_OK;
 }
@@ -156,7 +181,8 @@ Status fem_momentum_begin(FemMomentum *momentum, const FemState *state, const Fe
 Status fem_momentum_end(FemMomentum *momentum, const FemState *state, const FemMomentumContact *contact) {
   double half = 0.5 * (state->time - momentum->time);
   copy(momentum, momentum->now, momentum->next);
-  TRY(measure(momentum, state, contact, momentum->next));
+  copy_groups(momentum, momentum->groups, momentum->next_groups);
+  TRY(measure(momentum, state, contact, momentum->next, momentum->next_groups));
   momentum->next_time = state->time;
   for (int b = 0; b < momentum->body_count; b++) {
     const FemMomentumBody *now = &momentum->now[b];
@@ -172,6 +198,7 @@ Status fem_momentum_end(FemMomentum *momentum, const FemState *state, const FemM
 
 void fem_momentum_accept(FemMomentum *momentum) {
   copy(momentum, momentum->next, momentum->now);
+  copy_groups(momentum, momentum->next_groups, momentum->groups);
   momentum->time = momentum->next_time;
 }
 
@@ -186,42 +213,44 @@ static double weight_of(const FemMomentum *momentum, int body) {
                                    : 0;
 }
 
-// What a collision may stop, or transfer to a body.
-typedef struct Motion {
-  Vec3 common;     // to which all is relative [m/s]
-  double momentum; // Σ |p| of all bodies [kg m/s]
-  double speed;    // of the fastest [m/s]
-} Motion;
-
-// The common velocity (fem/model/floating.h) of the last accepted state.
-static Vec3 common_of(const FemMomentum *momentum) {
-  const FemModel *model = momentum->system->model;
-  Vec3 p = {0, 0, 0};
-  for (int b = 0; b < momentum->body_count; b++) p = vec3_add(p, vec3_at(momentum->now[b].p));
-  return fem_model_common_part(model, momentum->system->numbering.released,
-                               vec3_scale(1 / fem_model_mass(model), p));
-}
-
-static Vec3 momentum_of(const FemMomentum *momentum, const Motion *motion, int body) {
+// Of the last accepted state, relative to the common velocity of the body's group.
+static Vec3 momentum_of(const FemMomentum *momentum, const FemMomentumMotion *motion, int body) {
   double mass = momentum->system->model->bodies[body].mass;
-  return vec3_sub(vec3_at(momentum->now[body].p), vec3_scale(mass, motion->common));
+  return vec3_sub(vec3_at(momentum->now[body].p), vec3_scale(mass, vec3_at(motion->common)));
 }
 
-static Motion motion_of(const FemMomentum *momentum) {
-  Motion motion = {.common = common_of(momentum)};
+static void find_common(const FemMomentum *momentum, const int *groups) {
+  const FemModel *model = momentum->system->model;
   for (int b = 0; b < momentum->body_count; b++) {
-    double p = vec3_length(momentum_of(momentum, &motion, b));
-    motion.momentum += p;
-    motion.speed = fmax(motion.speed, p / momentum->system->model->bodies[b].mass);
+    FemMomentumMotion *motion = &momentum->motions[groups[b]];
+    motion->mass += model->bodies[b].mass;
+    vec3_accumulate(motion->common, vec3_at(momentum->now[b].p));
   }
-  return motion;
+  for (int g = 0; g < momentum->body_count; g++) {
+    FemMomentumMotion *motion = &momentum->motions[g];
+    if (groups[g] != g) continue;
+    Vec3 mean = vec3_scale(1 / motion->mass, vec3_at(motion->common));
+    vec3_store(motion->common, fem_model_common_part(model, momentum->system->numbering.released, mean));
+  }
+}
+
+// Of the groups. A body that touches nothing takes up nothing of others, however fast they are.
+static void find_motions(const FemMomentum *momentum, const int *groups) {
+  for (int b = 0; b < momentum->body_count; b++) momentum->motions[b] = (FemMomentumMotion){0};
+  find_common(momentum, groups);
+  for (int b = 0; b < momentum->body_count; b++) {
+    FemMomentumMotion *motion = &momentum->motions[groups[b]];
+    double p = vec3_length(momentum_of(momentum, motion, b));
+    motion->momentum += p;
+    motion->speed = fmax(motion->speed, p / momentum->system->model->bodies[b].mass);
+  }
 }
 
 // An estimate of S of a body at the end of the run, `left` [s] from now, the larger of two: S so far, the
 // impulse of its weight until then, and the momentum that a braking force has still to stop; or the momentum
-// that moving bodies and a pressing obstacle may transfer to it.
+// that a pressing obstacle and bodies of the group may transfer to it.
 static double expected_of(const FemMomentum *momentum, const FemMomentumBody *body, int number, double left,
-                          const Motion *motion) {
+                          const FemMomentumMotion *motion) {
   const FemModel *model = momentum->system->model;
   Vec3 p = momentum_of(momentum, motion, number), force = vec3_at(body->force);
   double mass = model->bodies[number].mass, size = vec3_length(force),
@@ -246,11 +275,11 @@ static double lasting_of(const FemMomentum *momentum, const FemMomentumBody *bod
 }
 
 bool fem_momentum_is_refused(const FemMomentum *momentum, double end) {
-  Motion motion = motion_of(momentum);
+  find_motions(momentum, momentum->next_groups);
   const double step = momentum->next_time - momentum->time, left = end - momentum->next_time;
   for (int b = 0; b < momentum->body_count; b++) {
     const FemMomentumBody *now = &momentum->now[b], *next = &momentum->next[b];
-    double expected = expected_of(momentum, next, b, left, &motion);
+    double expected = expected_of(momentum, next, b, left, &momentum->motions[momentum->next_groups[b]]);
     double before = lasting_of(momentum, now, b, step, expected),
            after = lasting_of(momentum, next, b, step, expected);
     double room = fmax(0.5 * (FEM_MOMENTUM_FAR * expected - before), FEM_MOMENTUM_STEP * expected);
@@ -261,13 +290,14 @@ bool fem_momentum_is_refused(const FemMomentum *momentum, double end) {
 }
 
 double fem_momentum_strictness(const FemMomentum *momentum, double end) {
-  Motion motion = motion_of(momentum);
+  find_motions(momentum, momentum->groups);
   double share = 0;
   for (int b = 0; b < momentum->body_count; b++) {
     const FemMomentumBody *now = &momentum->now[b];
     bool falls_freely = now->sum <= weight_of(momentum, b);
     if (falls_freely) continue;
-    double expected = expected_of(momentum, now, b, end - momentum->time, &motion);
+    double expected =
+        expected_of(momentum, now, b, end - momentum->time, &momentum->motions[momentum->groups[b]]);
     share = fmax(share, vec3_length(missing_of(now)) / expected);
   }
   double from = FEM_MOMENTUM_STRICT, to = FEM_MOMENTUM_FAR,
@@ -313,6 +343,7 @@ void fem_momentum_save(const FemMomentum *momentum, double *values) {
     memcpy(values, momentum->now[b].change, 3 * sizeof *values);
     memcpy(values + 3, momentum->now[b].impulse, 3 * sizeof *values);
     values[6] = momentum->now[b].size;
+    values[7] = momentum->groups[b];
   }
 }
 
@@ -321,6 +352,8 @@ void fem_momentum_load(FemMomentum *momentum, const double *values) {
     memcpy(momentum->now[b].change, values, 3 * sizeof *values);
     memcpy(momentum->now[b].impulse, values + 3, 3 * sizeof *values);
     momentum->now[b].size = values[6];
+    momentum->groups[b] = (int)values[7];
   }
   copy(momentum, momentum->now, momentum->next);
+  copy_groups(momentum, momentum->groups, momentum->next_groups);
 }

@@ -25,6 +25,14 @@ typedef struct FemMomentumBody {
   double driven;     // of the fastest obstacle that presses it [m/s]
 } FemMomentumBody;
 
+// What a collision may stop, or transfer to a body of a group.
+typedef struct FemMomentumMotion {
+  double mass;      // [kg]
+  double common[3]; // the velocity of the group that nothing detects (fem/model/floating.h) [m/s]
+  double momentum;  // Σ |p| of all bodies [kg m/s]
+  double speed;     // of the fastest [m/s]
+} FemMomentumMotion;
+
 typedef struct FemMomentum {
   FemSystem *system; // borrowed
   int body_count;
@@ -32,7 +40,10 @@ typedef struct FemMomentum {
   FemMomentumBody *now;  // until then                                     (body_count)
   FemMomentumBody *next; // until the end of the step that is looked at    (body_count)
   double next_time;
-  double *loads; // scratch; NULL: no loads                    (vertex_count, 3)
+  // Bodies that have pressed each other, directly or through others, are a group: its first body's number.
+  int *groups, *next_groups;  // of each body, as `now` and `next`            (body_count)
+  FemMomentumMotion *motions; // scratch, of each group at its body's number  (body_count)
+  double *loads;              // scratch; NULL: no loads                    (vertex_count, 3)
 } FemMomentum;
 
 // A zeroed one, and one whose creation failed, can be destroyed.
@@ -67,8 +78,8 @@ void fem_momentum_missing(const FemMomentum *momentum, double time, int body, do
 double fem_momentum_gap(const FemMomentum *momentum, double time, int body);
 double fem_momentum_largest_gap(const FemMomentum *momentum, double time, int *body);
 
-// What a checkpoint keeps: 7 numbers a body.
-enum { FEM_MOMENTUM_KEPT = 7 };
+// What a checkpoint keeps: 8 numbers a body.
+enum { FEM_MOMENTUM_KEPT = 8 };
 void fem_momentum_save(const FemMomentum *momentum, double *values);
 void fem_momentum_load(FemMomentum *momentum, const double *values);
 

@@ -100,7 +100,8 @@
 // Held by test_tolerance, test_impact.
 #define FEM_OF_EXPECTED_SPEED 10
 
-// With contact velocities may err by so many times time.tolerance of the fastest body's present speed.
+// With contact velocities may err by so many times time.tolerance of the present speed of the fastest
+// of the bodies that have pressed each other.
 // Held by test_tolerance, test_steps; 13_dead_bounce takes 869 steps instead of 336 with a third of it.
 #define FEM_OF_PRESENT_SPEED 5
 

@@ -91,8 +91,9 @@ static Status note(Proposal *proposal, Status status) {
 static Status propose(FemRunState *run, Proposal *proposal) {
   *proposal = (Proposal){.time = run->time};
   if (has_momentum_bound(run)) {
-    double strictness = fem_momentum_strictness(&run->recorder.ledger.momentum, run->model->scene->end);
-    fem_integrator_tighten(run->integrator, strictness);
+    const FemMomentum *momentum = &run->recorder.ledger.momentum;
+    double strictness = fem_momentum_strictness(momentum, run->model->scene->end);
+    fem_integrator_tighten(run->integrator, strictness, momentum->groups);
   }
   Status status = step(run, proposal);
   if (!status) status = audit(run, proposal);

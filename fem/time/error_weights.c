@@ -43,23 +43,52 @@ static double speed_of(const FemModel *model, const FemPart *part, const double 
   return isfinite(square) ? sqrt(square) : INFINITY;
 }
 
-static double fastest(const FemModel *model, const FemPart *part, const double *v) {
-  double speed = 0, common[3];
-  vec3_store(common, fem_error_weights_common(model, part, v));
+static FemErrorGroup *group_of(FemErrorGroup *all, const int *groups, int body) {
+  return &all[groups ? groups[body] : 0];
+}
+
+// The momenta and masses of the groups.
+static void find_momenta(const FemModel *model, const FemPart *part, const int *groups, const double *v,
+                         FemErrorGroup *all) {
   for (int b = 0, begin = 0, end; b < model->body_count; b++, begin = end) {
+    FemErrorGroup *group = group_of(all, groups, b);
     find_end(model, part, b, begin, &end);
-    speed = fmax(speed, speed_of(model, part, v, common, begin, end));
+    for (int i = begin; i < end; i++) {
+      int dof = fem_part_dof(part, i);
+      group->p[dof % 3] += model->mass[dof / 3] * v[i];
+    }
   }
-  return speed;
+  for (int g = 0; g < model->body_count; g++) ranks()->sum(all[g].p, 3);
+  for (int b = 0; b < model->body_count; b++) group_of(all, groups, b)->mass += model->bodies[b].mass;
+}
+
+static void find_speeds(const FemModel *model, const FemPart *part, const int *groups, const double *v,
+                        FemErrorGroup *all) {
+  const double released = part->numbering->released;
+  for (int b = 0; b < model->body_count; b++) all[b] = (FemErrorGroup){0};
+  if (vec3_length(fem_model_common_part(model, released, (Vec3){1, 1, 1})) > 0)
+    find_momenta(model, part, groups, v, all);
+  for (int b = 0, begin = 0, end; b < model->body_count; b++, begin = end) {
+    FemErrorGroup *group = group_of(all, groups, b);
+    double common[3] = {0};
+    if (group->mass > 0)
+      vec3_store(common,
+                 fem_model_common_part(model, released, vec3_scale(1 / group->mass, vec3_at(group->p))));
+    find_end(model, part, b, begin, &end);
+    group->speed = fmax(group->speed, speed_of(model, part, v, common, begin, end));
+  }
 }
 
 void fem_error_weights(const FemErrorTolerance *tolerance, const FemModel *model, const FemPart *part,
-                       const double *v, double *weights) {
-  double speed = tolerance->speed_share > 0 ? fastest(model, part, v) : 0;
+                       const int *groups, const double *v, FemErrorGroup *scratch, double *weights) {
+  if (tolerance->speed_share > 0) find_speeds(model, part, groups, v, scratch);
   for (int b = 0, begin = 0, end; b < model->body_count; b++, begin = end) {
     find_end(model, part, b, begin, &end);
-    double wave = fem_model_parts_least(model, b, fem_model_wave);
-    double velocity = fmax(tolerance->velocity, tolerance->speed_share * fmin(speed, wave));
+    double velocity = tolerance->velocity;
+    if (tolerance->speed_share > 0) {
+      double wave = fem_model_parts_least(model, b, fem_model_wave);
+      velocity = fmax(velocity, tolerance->speed_share * fmin(group_of(scratch, groups, b)->speed, wave));
+    }
     for (int i = begin; i < end; i++) {
       weights[i] = 1 / tolerance->displacement;
       weights[part->count + i] = 1 / velocity;

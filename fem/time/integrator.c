@@ -96,8 +96,9 @@ void fem_integrator_aim(FemIntegrator *integrator, double target) {
   integrator->target = target;
 }
 
-void fem_integrator_tighten(FemIntegrator *integrator, double share) {
+void fem_integrator_tighten(FemIntegrator *integrator, double share, const int *groups) {
   integrator->ida.strictness = share;
+  integrator->ida.groups = groups;
 }
 
 static FemStall *stall_of(FemIntegrator *integrator) {

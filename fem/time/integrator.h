@@ -59,8 +59,9 @@ double fem_integrator_shortest_step(const FemIntegrator *integrator);
 // equal ones lead there.
 void fem_integrator_aim(FemIntegrator *integrator, double target);
 
-// From the next step on velocities may err by this share of their tolerances, at most 1.
-void fem_integrator_tighten(FemIntegrator *integrator, double share);
+// From the next step on velocities may err by this share of their tolerances, at most 1, which go by the
+// speeds in a body's group (fem/time/error_weights.h): of each body its number, borrowed.
+void fem_integrator_tighten(FemIntegrator *integrator, double share, const int *groups);
 
 // One accepted step. STATUS_SOLVER: gave up; the message says at what time and step size, why, and what to
 // try. A fatal Status of an effect or a solver comes out as it is.

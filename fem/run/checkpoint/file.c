@@ -14,7 +14,7 @@
 #include "fem/run/checkpoint/numbers.h"
 
 // HDF5 looks for its own beginning at 0, 512, 1024 …
-enum { HEAD_SIZE = 512, FORMAT = 19, PATH_SIZE = 96 };
+enum { HEAD_SIZE = 512, FORMAT = 20, PATH_SIZE = 96 };
 static const char MAGIC[] = "tetlap checkpoint";
 
 // An effect's cost, one array.

@@ -43,8 +43,8 @@ int fem_ida_equations_weights(N_Vector y, N_Vector weights, void *self) {
   FemErrorTolerance tolerance = ida->tolerance;
   tolerance.velocity *= ida->strictness;
   tolerance.speed_share *= ida->strictness;
-  fem_error_weights(&tolerance, ida->system->model, &ida->part, fem_ida_values(y) + ida->n,
-                    fem_ida_values(weights));
+  fem_error_weights(&tolerance, ida->system->model, &ida->part, ida->groups, fem_ida_values(y) + ida->n,
+                    ida->group_speeds, fem_ida_values(weights));
   return 0;
 }
 

@@ -17,6 +17,8 @@ typedef struct FemIda {
   FemState *state;             // the one that was evaluated last, borrowed
   FemErrorTolerance tolerance; // of an unknown in a step
   double strictness;           // share of the tolerances of velocities that counts
+  const int *groups;           // of bodies that have pressed each other, borrowed; NULL: all are one
+  FemErrorGroup *group_speeds; // scratch (body_count)
   FemPart part;
   int n; // this rank's unknowns; y and ẏ have 2n
   SUNContext context;

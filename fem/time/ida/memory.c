@@ -4,6 +4,7 @@
 #include <ida/ida.h>
 #include <math.h>
 
+#include "base/memory.h"
 #include "fem/effect/contact/contact.h"
 #include "fem/model/limits.h"
 #include "fem/time/ida/equations.h"
@@ -57,6 +58,9 @@ Status fem_ida_memory_create(FemIda *ida, const FemIdaDef *def) {
   TRY(create_vectors(ida));
   TRY(fem_ida_solver_create(&ida->solver, ida->system, &ida->part, def->solver,
                             FEM_ROUNDING * def->tolerance.velocity, &ida->failure, ida->context));
+  const size_t bodies = (size_t)ida->system->model->body_count;
+  ida->group_speeds = memory_zeroed(bodies, sizeof *ida->group_speeds);
+  if (!ida->group_speeds) return status_no_memory("the integrator");
   TRY(fem_balance_create(&ida->balance, ida->system->model->body_count));
   FemNewtonUser user = fem_ida_equations_user(ida);
   TRY(fem_newton_create(&ida->newton, &user, ida->y, ida->context));
@@ -67,6 +71,7 @@ void fem_ida_memory_destroy(FemIda *ida) {
   if (ida->memory) IDAFree(&ida->memory);
   fem_newton_destroy(&ida->newton);
   fem_balance_destroy(&ida->balance);
+  memory_free(ida->group_speeds);
   fem_part_destroy(&ida->part);
   fem_ida_solver_destroy(ida->solver);
   N_Vector vectors[] = {ida->y, ida->y_dot, ida->interpolated, ida->evaluated, ida->weights};

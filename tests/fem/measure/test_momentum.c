@@ -221,16 +221,21 @@ START_TEST(contact_reactions_and_loads_are_balanced) {
 END_TEST
 
 // A stack lands on itself and on the ground, with friction, and steps that are too long for that are taken
-// back: or else 8e-3 would be missing here. What the thrown ball may yet stop counts more than what has acted
-// on the stack until then, so 9e-4 of that is more of this.
+// back: or else 8e-3 would be missing here. What a ball that is still in the air may yet transfer is no excuse.
 START_TEST(a_stack_that_lands_is_balanced) {
   SceneRun run;
   scene_run(&run, "../../examples/15_sleepers",
             (const char *const[]){"time.end=0.065", "output.vtu=false", NULL});
   ck_assert_int_gt(run.result.retries.momentum, 0);
-  ck_assert_msg(run.result.momentum.gap <= 5.5e-3, "%g", run.result.momentum.gap);
+  ck_assert_msg(run.result.momentum.gap <= 1e-3, "%g", run.result.momentum.gap);
   ck_assert_double_gt(run.result.contact.force_max, 0);
   scene_close(&run);
+}
+END_TEST
+
+// With tolerances and impulses of the fast body 7.5e-3 is missing of the cube's.
+START_TEST(a_body_that_flies_past_does_not_loosen_what_others_are_held_to) {
+  expect_balance("flyer", NULL, true);
 }
 END_TEST
 
@@ -290,6 +295,7 @@ int main(void) {
   tcase_add_test(cases, what_order_1_recovers_is_not_counted_up_to_its_limit);
   tcase_add_test(cases, velocities_are_held_the_closer_the_more_is_missing);
   tcase_add_test(cases, a_stack_that_lands_is_balanced);
+  tcase_add_test(cases, a_body_that_flies_past_does_not_loosen_what_others_are_held_to);
   tcase_add_test(cases, edges_that_meet_crosswise_are_balanced);
   tcase_add_test(cases, edges_of_steel_that_rub_are_balanced);
   tcase_add_test(cases, a_ball_that_rolls_on_is_balanced);

@@ -201,7 +201,7 @@ END_TEST
 START_TEST(a_right_head_does_not_make_a_checkpoint) {
   char file[560], digest[DIGEST_TEXT];
   static const char *const heads[] = {
-      "tetlap checkpoint 19\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n",
+      "tetlap checkpoint 20\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n",
       "tetlap checkpoint 2\nbytes %d\ndigest %s\nHDF5 follows: h5dump reads this file\n"};
   static const char *const words[] = {"is damaged", "is of format 2, written by another program"};
   for (int k = 0; k < 2; k++) {
@@ -226,7 +226,7 @@ START_TEST(a_checkpoint_of_another_format_names_the_program_that_wrote_it) {
   char *number = strstr(text, "checkpoint ") + strlen("checkpoint ");
   memcpy(number, "10", 2);
   write_file(text, size);
-  expect(STATUS_INPUT, "is of format 10, written by tetlap 0.0.9; this program reads format 19");
+  expect(STATUS_INPUT, "is of format 10, written by tetlap 0.0.9; this program reads format 20");
   memory_free(text);
   fem_checkpoint_destroy(&written);
 }

@@ -118,6 +118,7 @@ START_TEST(a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_b
   ck_assert_ok(fem_numbering_create(&numbering, &run.model));
   ck_assert_ok(fem_part_create(&part, &run.model, &numbering));
   double *v = calloc((size_t)n, sizeof *v), *weights = calloc(2 * (size_t)n, sizeof *weights);
+  FemErrorGroup groups[2];
   const FemMaterial *soft = &run.model.parts[0].material;
   double wave = sqrt(soft->young / soft->density);
   FemErrorTolerance tolerance = {.displacement = 1e-5, .velocity = 1e-6 * wave, .speed_share = 1e-3};
@@ -128,15 +129,20 @@ START_TEST(a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_b
       int dof = numbering.dof_of_unknown[i];
       v[i] = dof % 3 == 2 && dof / 3 < run.model.bodies[0].vertex_end ? speeds[k] : 0;
     }
-    fem_error_weights(&tolerance, &run.model, &part, v, weights);
+    fem_error_weights(&tolerance, &run.model, &part, NULL, v, groups, weights);
     for (int i = 0; i < n; i++) {
       int body = numbering.dof_of_unknown[i] / 3 >= run.model.bodies[0].vertex_end;
       ck_assert_near(weights[i], 1e5, 1e-6);
       ck_assert_near(1 / weights[n + i], expected[k][body] * wave, 1e-9 * wave);
     }
   }
+  fem_error_weights(&tolerance, &run.model, &part, (const int[]){0, 1}, v, groups, weights);
+  for (int i = 0; i < n; i++) { // the second has pressed nothing: it does not move
+    int body = numbering.dof_of_unknown[i] / 3 >= run.model.bodies[0].vertex_end;
+    ck_assert_near(1 / weights[n + i], (body ? 1e-6 : 1e-3) * wave, 1e-9 * wave);
+  }
   v[0] = NAN;
-  fem_error_weights(&tolerance, &run.model, &part, v, weights);
+  fem_error_weights(&tolerance, &run.model, &part, NULL, v, groups, weights);
   for (int i = 0; i < 2 * n; i++) ck_assert(weights[i] > 0 && isfinite(weights[i]));
   free(v), free(weights);
   fem_numbering_destroy(&numbering);
