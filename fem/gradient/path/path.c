@@ -169,7 +169,6 @@ static Status go_back_with(FemSweep *sweep, FemGradient *gradient) {
 static Status go_back_to(FemSweep *sweep, int k, FemGradient *gradient) {
   sweep->step = k;
   TRY(fem_replay_return(&sweep->replay, k));
-  if (fem_replay_is_anew(&sweep->replay, k)) sweep->factorised = 0;
   TRY(fem_tangent_find(&sweep->tangent, &sweep->replay.state));
   return go_back_with(sweep, gradient);
 }

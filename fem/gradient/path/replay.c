@@ -120,14 +120,18 @@ static size_t history_count(const FemReplay *replay) {
   return rows * (size_t)replay->system.effect_count;
 }
 
-// A new one: a solver keeps its order of elimination, so one which goes on adds up otherwise than one which
-// begins.
-static Status create_solver(FemReplay *replay) {
-  fem_equilibrium_destroy(&replay->equilibrium);
-  TRY(fem_equilibrium_create(&replay->equilibrium, &replay->system, &replay->state, &fem_solver_cholmod));
-  fem_solver_cholmod.be_rough(replay->equilibrium.solver);
-  replay->has_factor = false;
+// Of which solutions serve as a preconditioner only.
+static Status create_solver(FemReplay *replay, FemEquilibrium *equilibrium) {
+  TRY(fem_equilibrium_create(equilibrium, &replay->system, &replay->state, &fem_solver_cholmod));
+  fem_solver_cholmod.be_rough(equilibrium->solver);
   return STATUS_OK;
+}
+
+// A solver keeps its order of elimination, so one which goes on adds up otherwise than one which begins.
+static Status renew_solver(FemReplay *replay) {
+  fem_equilibrium_destroy(&replay->equilibrium);
+  replay->has_factor = false;
+  return create_solver(replay, &replay->equilibrium);
 }
 
 Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemReplaySteps *steps) {
@@ -158,6 +162,7 @@ Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemRepl
   TRY(create_slips(replay));
   TRY(create_yields(replay));
   TRY(create_krylov(replay));
+  TRY(create_solver(replay, &replay->adjoint));
   return fem_mixing_create(&replay->mixing, replay->n);
 }
 
@@ -167,6 +172,7 @@ void fem_replay_destroy(FemReplay *replay) {
   fem_krylov_destroy(&replay->krylov);
   fem_mixing_destroy(&replay->mixing);
   fem_equilibrium_destroy(&replay->equilibrium);
+  fem_equilibrium_destroy(&replay->adjoint);
   for (int i = 0; i < FEM_MAX_EFFECTS; i++) replay->before.histories[i] = (FemEffectHistory){0}; // borrowed
   fem_state_destroy(&replay->before);
   fem_state_destroy(&replay->state);
@@ -394,7 +400,8 @@ static void recall(FemReplay *replay, int k, FemState *state) {
   state->last = state;
 }
 
-bool fem_replay_is_anew(const FemReplay *replay, int k) {
+// Whether the replay begins anew at step k, forwards and backwards.
+static bool is_anew(const FemReplay *replay, int k) {
   return k % FEM_REPLAY_BLOCK == 0 && k + 1 < replay->steps->count;
 }
 
@@ -409,7 +416,7 @@ static Status begin_anew(FemReplay *replay, int k) {
     if (history->count > 0) TRY(fem_system_remember(system, e, history->values, history->count));
   }
   replay->state.last = &system->accepted;
-  return create_solver(replay);
+  return renew_solver(replay);
 }
 
 // ---- Segments.
@@ -441,7 +448,7 @@ static Status go_through(FemReplay *replay, bool is_again) {
   TRY(begin_anew(replay, begin));
   for (int k = begin + 1; k <= last && k <= begin + replay->plan.length; k++) {
     TRY(fem_replay_end(replay, k, step(replay, k, is_again)));
-    if (k < begin + replay->plan.length && fem_replay_is_anew(replay, k)) TRY(begin_anew(replay, k));
+    if (k < begin + replay->plan.length && is_anew(replay, k)) TRY(begin_anew(replay, k));
   }
   replay->spent_s += clock_cpu_s() - began;
   return STATUS_OK;
@@ -472,7 +479,7 @@ static Status fetch(FemReplay *replay, int k) {
 Status fem_replay_return(FemReplay *replay, int k) {
   double time = replay->steps->times[k];
   TRY(fetch(replay, k));
-  if (fem_replay_is_anew(replay, k)) TRY(begin_anew(replay, k));
+  if (is_anew(replay, k)) TRY(begin_anew(replay, k));
   recall(replay, k > 0 ? k - 1 : 0, &replay->before);
   replay->state.last = &replay->before;
   TRY(fem_equilibrium_renew(&replay->equilibrium, time, u_of(replay, k)));
@@ -482,6 +489,6 @@ Status fem_replay_return(FemReplay *replay, int k) {
 
 Status fem_replay_factorise(FemReplay *replay, int k) {
   double c = fem_replay_formula(replay, k).c;
-  return fem_equilibrium_factorise_moving(&replay->equilibrium, replay->steps->times[k], u_of(replay, k),
+  return fem_equilibrium_factorise_moving(&replay->adjoint, replay->steps->times[k], u_of(replay, k),
                                           v_of(replay, k), c, c * c);
 }

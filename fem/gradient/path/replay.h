@@ -27,7 +27,8 @@ typedef struct FemReplay {
   FemSystem system;
   FemState before, state; // of the step before, and the one under trial
   FemEquilibrium equilibrium;
-  FemKrylov krylov; // where the matrix is not near J
+  FemEquilibrium adjoint; // of the way back; its factor serves on where the replay begins anew
+  FemKrylov krylov;       // where the matrix is not near J
   FemMixing mixing;
   double *weights; // of its norm, 1                            (n)
   bool has_factor; // which serves the next step, too
@@ -61,14 +62,12 @@ Status fem_replay_go(FemReplay *replay);
 // Puts `state` to step k as it was found and `before` to step k − 1. To be called from the last step on, one
 // by one; a segment may be done again for it.
 Status fem_replay_return(FemReplay *replay, int k);
-// Whether the replay begins anew at step k, forwards and backwards.
-bool fem_replay_is_anew(const FemReplay *replay, int k);
 // v of step k, which is there (n); before it in memory that of the steps before, as many as the formula
 // needs.
 const double *fem_replay_v(const FemReplay *replay, int k);
 // What effects remember after step k, which is in memory or ends a segment              (effect_count).
 FemEffectHistory *fem_replay_histories(const FemReplay *replay, int k);
-// Factorises K + c D + c² M at step k, to which the replay has returned.
+// Factorises K + c D + c² M at step k, to which the replay has returned, in `adjoint`.
 Status fem_replay_factorise(FemReplay *replay, int k);
 
 // The formula of step k; before and beyond the steps, and in a static scene, 0.

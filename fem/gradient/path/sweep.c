@@ -68,7 +68,7 @@ static Status create_goal(const FemSweep *sweep, FemSweepGoal *goal) {
 static Status multiply(void *self, const double *x, double *y);
 
 static Status precondition(void *self, const double *x, double *y) {
-  return fem_equilibrium_solve(&((FemSweep *)self)->replay.equilibrium, x, y);
+  return fem_equilibrium_solve(&((FemSweep *)self)->replay.adjoint, x, y);
 }
 
 Status fem_sweep_create(FemSweep *sweep, const FemModel *model, const FemGradientDef *def,
