@@ -238,6 +238,18 @@ static Status multiply(void *self, const double *x, double *y) {
   return STATUS_OK;
 }
 
+// Of a step d = P⁻¹ r by a factor P of another c, the share after which least is left: with
+// J d = r + (c² − c_P²) M d it is r·J d / |J d|².
+static double find_share(const FemReplay *replay, double c) {
+  double top = 0, bottom = 0, more = c * c - replay->factor_c * replay->factor_c;
+  for (int i = 0; i < replay->n; i++) {
+    double along = replay->force[i] + more * fem_replay_mass(replay, i) * replay->step[i];
+    top += replay->force[i] * along;
+    bottom += along * along;
+  }
+  return top > 0 ? top / bottom : 1;
+}
+
 // How Newton's method goes on.
 typedef struct FemReplayWay {
   bool is_fresh;     // with the matrix there, not an earlier one
@@ -252,9 +264,12 @@ static Status find_step(FemReplay *replay, double time, const double *u, const d
     TRY(fem_equilibrium_factorise_moving(&replay->equilibrium, time, u, v, c, c * c));
     fem_mixing_forget(&replay->mixing);
     replay->has_factor = true;
+    replay->factor_c = c;
   }
   if (!way.is_corrected) {
     TRY(fem_equilibrium_solve(&replay->equilibrium, replay->force, replay->step));
+    if (!replay->mixing.has_last) replay->share = find_share(replay, c);
+    for (int i = 0; i < replay->n; i++) replay->step[i] *= replay->share;
     if (!way.is_mixed) return STATUS_OK;
     fem_mixing_mix(&replay->mixing, replay->weights, replay->step);
     fem_mixing_take(&replay->mixing, 1, replay->step);

@@ -32,6 +32,8 @@ typedef struct FemReplay {
   FemMixing mixing;
   double *weights; // of its norm, 1                            (n)
   bool has_factor; // which serves the next step, too
+  double factor_c; // c of the step that it is of
+  double share;    // that is taken of its steps
   void *stick;     // friction's effect, borrowed; NULL: none
   void *plastic;   // that of plasticity, borrowed; NULL: none
   bool is_near;    // the matrix is near J: no friction, damping, following pressure
