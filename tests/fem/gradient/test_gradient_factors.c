@@ -9,7 +9,7 @@
 enum { MOST_STEPS = 1000 };
 
 // What the functions that are replaced saw, and whether the first solution by an earlier factor fails.
-static int factorised[MOST_STEPS], step_factorised, step_here, couplings;
+static int factorised[MOST_STEPS], step_factorised, step_here, couplings, factors_ahead;
 static double largest_left;
 static bool is_failing, has_failed;
 // Whether a factor, but within GMRES, gets on badly with small forces, and the largest that it met.
@@ -23,6 +23,10 @@ Status __real_fem_replay_return(FemReplay *replay, int k);
 Status __wrap_fem_replay_return(FemReplay *replay, int k);
 Status __real_fem_replay_factorise(FemReplay *replay, int k);
 Status __wrap_fem_replay_factorise(FemReplay *replay, int k);
+Status __real_fem_equilibrium_factorise_moving(FemEquilibrium *equilibrium, double time, const double *u,
+                                               const double *v, double damping, double shift);
+Status __wrap_fem_equilibrium_factorise_moving(FemEquilibrium *equilibrium, double time, const double *u,
+                                               const double *v, double damping, double shift);
 Status __real_fem_equilibrium_solve(FemEquilibrium *equilibrium, const double *b, double *x);
 Status __wrap_fem_equilibrium_solve(FemEquilibrium *equilibrium, const double *b, double *x);
 Status __real_fem_krylov_solve(FemKrylov *krylov, const double *b, double tolerance, double *x,
@@ -46,6 +50,12 @@ Status __wrap_fem_replay_factorise(FemReplay *replay, int k) {
   factorised[k]++;
   step_factorised = k;
   return __real_fem_replay_factorise(replay, k);
+}
+
+Status __wrap_fem_equilibrium_factorise_moving(FemEquilibrium *equilibrium, double time, const double *u,
+                                               const double *v, double damping, double shift) {
+  factors_ahead += running == NULL;
+  return __real_fem_equilibrium_factorise_moving(equilibrium, time, u, v, damping, shift);
 }
 
 Status __wrap_fem_equilibrium_solve(FemEquilibrium *equilibrium, const double *b, double *x) {
@@ -85,7 +95,7 @@ Status __wrap_fem_krylov_solve(FemKrylov *krylov, const double *b, double tolera
 
 static void differentiate(const Asked *asked, bool fails, FemReplaySteps *steps, Answer *answer) {
   memset(factorised, 0, sizeof factorised);
-  largest_left = 0, step_factorised = 0, couplings = 0, running = NULL, has_failed = false;
+  largest_left = 0, step_factorised = 0, couplings = 0, factors_ahead = 0, running = NULL, has_failed = false;
   is_failing = fails;
   replay(asked, steps, NULL, true, answer);
 }
@@ -123,6 +133,27 @@ START_TEST(goals_share_a_factor_which_serves_many_steps) {
   int count = count_factors(&steps);
   ck_assert_int_gt(count, 0);
   if (_i != RUB) ck_assert_int_lt(2 * count, steps.count);
+  destroy(&answer);
+  fem_replay_steps_destroy(&steps);
+}
+END_TEST
+
+// The run's steps grow and shrink, and a factor of another length serves: but for those with which the replay
+// begins anew there are few.
+START_TEST(the_replay_keeps_a_factor_over_steps_of_other_lengths) {
+  const Asked asked = asked_of(_i);
+  FemReplaySteps steps;
+  Answer answer;
+  find_steps(&asked, &steps);
+  differentiate(&asked, false, &steps, &answer);
+  double shortest = INFINITY, longest = 0;
+  for (int k = 1; k < steps.count; k++) {
+    shortest = fmin(shortest, steps.times[k] - steps.times[k - 1]);
+    longest = fmax(longest, steps.times[k] - steps.times[k - 1]);
+  }
+  ck_assert_double_gt(longest, 4 * shortest);
+  ck_assert_int_ge(factors_ahead, 1);
+  ck_assert_int_lt(10 * factors_ahead, steps.count);
   destroy(&answer);
   fem_replay_steps_destroy(&steps);
 }
@@ -221,6 +252,7 @@ END_TEST
 int main(void) {
   TCase *test_case = tcase_create("gradient_factors");
   tcase_add_loop_test(test_case, goals_share_a_factor_which_serves_many_steps, 0, SCENE_COUNT);
+  tcase_add_loop_test(test_case, the_replay_keeps_a_factor_over_steps_of_other_lengths, 0, RUB);
   tcase_add_loop_test(test_case, what_may_meet_is_looked_for_where_bodies_have_moved, 0, RUB);
   tcase_add_test(test_case, nothing_is_laid_out_ahead_beyond_what_was_searched);
   tcase_add_loop_test(test_case, the_residual_that_is_told_is_that_of_the_worst_system, 0, SCENE_COUNT);
