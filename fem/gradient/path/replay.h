@@ -5,10 +5,10 @@
 //   v_n = c u_n + a₁ u_{n−1} + a₂ u_{n−2},   M (c v_n + a₁ v_{n−1} + a₂ v_{n−2}) = f(u_n, t_n; history),
 //
 // a static scene from equilibrium to equilibrium (c = a₁ = a₂ = 0). The replay differs from the run by the
-// error of its steps. In a motion a factor of the matrix serves many steps, and Newton's steps by it are
-// mixed (fem/time/newton/mixing.h). The matrices of friction, of damping and of following pressures are not
-// exact. With these, systems are solved by GMRES on differences of forces, always in a static scene, and in a
-// motion where a new factor gets on no better.
+// error of its steps. In a motion a factor of the matrix serves many steps, also of other lengths; Newton's
+// steps by it are scaled and mixed (fem/time/newton/mixing.h). The matrices of friction, of damping and of
+// following pressures are not exact. With these, systems are solved by GMRES on differences of forces, always
+// in a static scene, and in a motion where a new factor gets on no better.
 #ifndef TETLAP_FEM_GRADIENT_PATH_REPLAY_H
 #define TETLAP_FEM_GRADIENT_PATH_REPLAY_H
 
