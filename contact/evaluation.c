@@ -434,7 +434,7 @@ static void summarise(ContactEvaluation *evaluation, const ContactLayout *layout
 // By the depth field: energies, and the forces on the pairs' own vertices.
 static Status press_by_field(ContactEvaluation *evaluation, const ContactLayout *layout) {
   int bad = INT_MAX;
-#pragma omp parallel for schedule(dynamic, 32) reduction(min : bad) if (evaluation->mesh_pair_count > 512)
+#pragma omp parallel for schedule(dynamic, 32) reduction(min : bad) if (evaluation->mesh_pair_count > 4096)
   for (int k = 0; k < evaluation->pair_count; k++) {
     size_t at = (size_t)k;
     if (k < evaluation->mesh_pair_count)

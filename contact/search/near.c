@@ -117,7 +117,7 @@ static void mark_portion(ContactNear *near, const ContactPair *pairs, int begin,
 }
 
 static void mark(ContactNear *near, const ContactCandidateList *candidates) {
-#pragma omp parallel for schedule(dynamic) if (candidates->count > 2048)
+#pragma omp parallel for schedule(dynamic) if (candidates->count > 16384)
   for (int begin = 0; begin < candidates->count; begin += PORTION_SIZE) {
     int left = candidates->count - begin;
     mark_portion(near, candidates->pairs, begin, begin + (left < PORTION_SIZE ? left : PORTION_SIZE));

@@ -117,7 +117,7 @@ static Status answer_all(const OverlapClipLanes *lanes, const OverlapBatch *batc
 
 // What one thread takes at a time: small portions of small batches, so that there are enough of them. From
 // WORTH_THREADS pairs on more than one thread is worth it.
-enum { PORTION = 512, SMALL_PORTION = 128, MANY = 16 * PORTION, WORTH_THREADS = 8 * SMALL_PORTION };
+enum { PORTION = 512, SMALL_PORTION = 128, MANY = 16 * PORTION, WORTH_THREADS = 16 * SMALL_PORTION };
 
 // `self`: the lanes; NULL: none, each pair by itself.
 static Status eval_portion(const void *self, const OverlapBatch *portion, int first) {

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "fem/sparse/front/dense.h"
 #include "fem/sparse/front/sweep.h"
+#include "fem/sparse/solver.h"
 #include "fem/sparse/vector.h"
 
 // Columns that are eliminated together in a front whose panel is cut into pieces, and the sides of a piece.
@@ -16,9 +17,9 @@ enum { BLOCK = 128, TILE = 256 };
 enum { ROWS = 512, COLUMNS = 16 };
 // Multiplications of a front that is worth being cut in a factorisation, and in a solution.
 static const double LARGE = 1e7, LONG = 1e5;
-// A solution by fewer numbers is over before another thread is awake, and they stay near the processor: half
-// of the bytes take as long.
-static const size_t FEW_VALUES = 500000;
+// A factorisation into fewer numbers, and a solution by fewer, is over before another thread is awake; the
+// numbers stay near the processor, and half of the bytes take as long.
+static const size_t FEW_VALUES = 500000, FEW_SOLVED = 2000000;
 // What fronts leave keeps its memory up to this count of numbers, 16 MB: to get, clear and give back so
 // little takes half as long as the elimination. All together it is about as large as the factor.
 static const size_t KEPT_VALUES = 2000000;
@@ -332,14 +333,17 @@ static void make_all(Make *make) {
 
 Status fem_front_factor_make(FemFrontFactor *factor, const double *values) {
   Make make = {.factor = factor, .values = values};
-  TRY(make_stacks(factor, omp_get_max_threads()));
-  if (is_alone()) {
+  const int before = fem_solver_use_threads(factor->tree->value_count <= FEW_VALUES ? 1 : 0);
+  Status room = make_stacks(factor, omp_get_max_threads());
+  if (room == STATUS_OK && is_alone()) {
     make_all(&make);
-  } else {
+  } else if (room == STATUS_OK) {
 #pragma omp parallel
 #pragma omp single
     make_all(&make);
   }
+  fem_solver_use_threads(before);
+  TRY(room);
   Status status = atomic_load(&make.failure);
   if (status == STATUS_RETRY)
     return status_fail(STATUS_RETRY, "the condensed matrix is not positive definite");
@@ -480,13 +484,15 @@ static void solve(FemFrontFactor *factor, bool is_rough, const double *b, double
   factor->is_rough = is_rough;
 #pragma omp parallel for schedule(static) if (tree->size > FEM_VECTOR_LONG)
   for (int i = 0; i < tree->size; i++) factor->x[i] = b[tree->unknown[i]];
-  if (is_alone() || tree->value_count <= FEW_VALUES) {
+  const int before = fem_solver_use_threads(tree->value_count <= FEW_SOLVED ? 1 : 0);
+  if (is_alone()) {
     sweep_all(factor);
   } else {
 #pragma omp parallel
 #pragma omp single
     sweep_all(factor);
   }
+  fem_solver_use_threads(before);
 #pragma omp parallel for schedule(static) if (tree->size > FEM_VECTOR_LONG)
   for (int i = 0; i < tree->size; i++) x[tree->unknown[i]] = factor->x[i];
 }
