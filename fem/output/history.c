@@ -3,7 +3,7 @@
 
 #include <math.h>
 #include <stdarg.h>
-#include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,15 +20,38 @@ Status fem_history_create(FemHistory *history, const char *path) {
 void fem_history_destroy(FemHistory *history) {
   for (int c = 0; c < history->column_count; c++) memory_free(history->titles[c]);
   memory_free(history->titles);
+  memory_free(history->places);
   memory_free(history->line);
   journal_destroy(&history->file);
   *history = (FemHistory){0};
 }
 
-static bool has_column(const FemHistory *history, const char *title) {
-  for (int c = 0; c < history->column_count; c++)
-    if (strcmp(history->titles[c], title) == 0) return true;
-  return false;
+// FNV-1a.
+static uint64_t hash_of(const char *text) {
+  uint64_t hash = 0xcbf29ce484222325;
+  for (; *text; text++) hash = (hash ^ (unsigned char)*text) * 0x100000001b3;
+  return hash;
+}
+
+// Where a title is, or would be.
+static int *place_of(const FemHistory *history, const char *title) {
+  size_t at = hash_of(title) & (history->place_count - 1);
+  for (; history->places[at]; at = (at + 1) & (history->place_count - 1))
+    if (strcmp(history->titles[history->places[at] - 1], title) == 0) break;
+  return &history->places[at];
+}
+
+// Room for one more, half of the places free.
+static Status make_places(FemHistory *history) {
+  enum { FEW = 256 };
+  if (2 * ((size_t)history->column_count + 1) <= history->place_count) return STATUS_OK;
+  const size_t count = history->place_count > 0 ? 2 * history->place_count : FEW;
+  int *places = memory_zeroed(count, sizeof *places);
+  if (!places) return status_no_memory("a column of the history");
+  memory_free(history->places);
+  history->places = places, history->place_count = count;
+  for (int c = 0; c < history->column_count; c++) *place_of(history, history->titles[c]) = c + 1;
+  return STATUS_OK;
 }
 
 // The formatted text, owned by the caller; NULL: no memory.
@@ -42,25 +65,30 @@ static char *print_title(const char *format, va_list arguments) {
   return title;
 }
 
+// Takes the title.
+static Status add(FemHistory *history, char *title) {
+  if (!memory_reserve((void **)&history->titles, &history->title_capacity, (size_t)history->column_count + 1,
+                      sizeof *history->titles))
+    return status_no_memory("a column of the history");
+  TRY(make_places(history));
+  int *place = place_of(history, title);
+  if (*place)
+    return status_fail(STATUS_INPUT,
+                       "%s: two columns would be named %s; give one of the bodies or probes another name",
+                       history->file.path, title);
+  history->titles[history->column_count++] = title;
+  *place = history->column_count;
+  return STATUS_OK;
+}
+
 Status fem_history_add_column(FemHistory *history, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
   char *title = print_title(format, arguments);
   va_end(arguments);
-  if (!title || !memory_reserve((void **)&history->titles, &history->title_capacity,
-                                (size_t)history->column_count + 1, sizeof *history->titles)) {
-    memory_free(title);
-    return status_no_memory("a column of the history");
-  }
-  Status status = STATUS_OK;
-  if (has_column(history, title))
-    status = status_fail(STATUS_INPUT,
-                         "%s: two columns would be named %s; give one of the bodies or probes another name",
-                         history->file.path, title);
-  if (status)
-    memory_free(title);
-  else
-    history->titles[history->column_count++] = title;
+  if (!title) return status_no_memory("a column of the history");
+  Status status = add(history, title);
+  if (status) memory_free(title);
   return status;
 }
 

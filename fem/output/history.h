@@ -16,6 +16,8 @@ typedef struct FemHistory {
   Journal file;
   char **titles; // of the columns, owned                         (column_count)
   int column_count;
+  int *places; // of the titles: numbers of columns from 1 on, open addressing (place_count)
+  size_t place_count;
   char *line; // the one being printed                              (line_size)
   size_t line_size;
   size_t title_capacity, line_capacity;

@@ -33,12 +33,31 @@ static const ContactInterfaceDef *interfaces_of(const FemSystem *system, int *co
   return contact ? contact_system_layout(contact)->interfaces : NULL;
 }
 
+// The most columns that spreadsheets read. Interfaces that make more have none of their own: then there is
+// the force on each body.
+enum { MOST_COLUMNS = 16384, OF_INTERFACE = 10, OF_FRICTION = 5 };
+
+static void choose_columns(FemRecorder *recorder) {
+  int count, each = OF_INTERFACE + (fem_forces_has_friction(recorder->system) ? OF_FRICTION : 0);
+  interfaces_of(recorder->system, &count);
+  recorder->told = count;
+  if (count <= MOST_COLUMNS / each) return;
+  recorder->told = 0;
+  log_info("history: the %d pairs of bodies would have more than %d columns: it has the force on each body",
+           count, MOST_COLUMNS);
+}
+
+// Whether bodies have columns in the place of interfaces.
+static bool tells_bodies(const FemRecorder *recorder) {
+  return recorder->told < recorder->forces.interface_count;
+}
+
 static Status add_friction_columns(FemRecorder *recorder) {
   int count;
   FemHistory *history = &recorder->history;
   const ContactInterfaceDef *interfaces = interfaces_of(recorder->system, &count);
   const void *effect = fem_system_effect(recorder->system, &fem_effect_contact);
-  for (int i = 0; i < count && fem_forces_has_friction(recorder->system); i++) {
+  for (int i = 0; i < recorder->told && fem_forces_has_friction(recorder->system); i++) {
     const char *a = fem_effect_contact_name(effect, interfaces[i].a),
                *b = fem_effect_contact_name(effect, interfaces[i].b);
     for (int c = 0; c < 3; c++) TRY(fem_history_add_column(history, "friction_%s_%s_%c_N", a, b, "xyz"[c]));
@@ -50,6 +69,7 @@ static Status add_friction_columns(FemRecorder *recorder) {
 
 static Status add_columns(FemRecorder *recorder) {
   const FemModel *model = recorder->system->model;
+  choose_columns(recorder);
   FemHistory *history = &recorder->history;
   for (int i = 0; i < fem_columns_count(); i++)
     if (has_column(recorder, i)) TRY(fem_history_add_column(history, "%s", fem_columns_title(i)));
@@ -59,28 +79,31 @@ static Status add_columns(FemRecorder *recorder) {
   int count;
   const ContactInterfaceDef *interfaces = interfaces_of(recorder->system, &count);
   const void *effect = fem_system_effect(recorder->system, &fem_effect_contact);
-  for (int i = 0; i < count; i++)
+  for (int i = 0; i < recorder->told; i++)
     for (int c = 0; c < 3; c++)
       TRY(fem_history_add_column(history, "force_%s_%s_%c_N",
                                  fem_effect_contact_name(effect, interfaces[i].a),
                                  fem_effect_contact_name(effect, interfaces[i].b), "xyz"[c]));
+  for (int b = 0; b < model->scene->body_count && tells_bodies(recorder); b++)
+    for (int c = 0; c < 3; c++)
+      TRY(fem_history_add_column(history, "force_%s_%c_N", model->bodies[b].name, "xyz"[c]));
   TRY(fem_reactions_add_columns(history, model));
   for (int b = 0; b < model->scene->body_count && !model->scene->is_static; b++)
     for (int c = 0; c < 3; c++)
       TRY(fem_history_add_column(history, "unbalanced_%s_%c_Ns", model->bodies[b].name, "xyz"[c]));
-  for (int i = 0; i < count; i++) {
+  for (int i = 0; i < recorder->told; i++) {
     const char *a = fem_effect_contact_name(effect, interfaces[i].a),
                *b = fem_effect_contact_name(effect, interfaces[i].b);
     TRY(fem_history_add_column(history, "contact_area_%s_%s_m2", a, b));
     for (int c = 0; c < 3; c++)
       TRY(fem_history_add_column(history, "contact_centre_%s_%s_%c_m", a, b, "xyz"[c]));
   }
-  for (int i = 0; i < count; i++)
+  for (int i = 0; i < recorder->told; i++)
     for (int c = 0; c < 3; c++)
       TRY(fem_history_add_column(history, "moment_%s_%s_%c_Nm",
                                  fem_effect_contact_name(effect, interfaces[i].a),
                                  fem_effect_contact_name(effect, interfaces[i].b), "xyz"[c]));
-  recorder->moments = memory_zeroed((size_t)count, sizeof *recorder->moments);
+  recorder->moments = memory_zeroed((size_t)recorder->told, sizeof *recorder->moments);
   if (!recorder->moments) return status_no_memory("the history");
   TRY(add_friction_columns(recorder));
   TRY(fem_probes_add_columns(history, model));
@@ -397,9 +420,24 @@ static double *append_centres(const FemModel *model, const double *positions, do
   return row;
 }
 
+static double *append_forces_on_bodies(const FemRecorder *recorder, double *row) {
+  int count, bodies = recorder->system->model->scene->body_count;
+  const ContactInterfaceDef *interfaces = interfaces_of(recorder->system, &count);
+  if (!tells_bodies(recorder)) return row;
+  memset(row, 0, 3 * (size_t)bodies * sizeof *row);
+  for (int i = 0; i < count; i++) {
+    const int a = interfaces[i].a, b = interfaces[i].b;
+    Vec3 force = vec3_at(recorder->forces.interfaces[i]);
+    if (a == b) continue;
+    if (a < bodies) vec3_accumulate(row + 3 * (size_t)a, force);
+    if (b < bodies) vec3_accumulate(row + 3 * (size_t)b, vec3_scale(-1, force));
+  }
+  return row + 3 * (size_t)bodies;
+}
+
 static double *append_friction(const FemRecorder *recorder, double *row) {
   const FemRubbing *rubbing = recorder->forces.rubbing;
-  for (int i = 0; rubbing && i < recorder->forces.interface_count; i++) {
+  for (int i = 0; rubbing && i < recorder->told; i++) {
     vec3_store(row, vec3_at(rubbing[i].force));
     row += 3;
     *row++ = rubbing[i].stuck;
@@ -414,21 +452,20 @@ static Status fill_row(FemRecorder *recorder, FemColumnSource source) {
   for (int i = 0; i < fem_columns_count(); i++)
     if (has_column(recorder, i)) *row++ = fem_columns_value(i, &source);
   row = append_centres(recorder->system->model, source.state->positions, row);
-  int count;
-  interfaces_of(recorder->system, &count);
-  for (int i = 0; i < count; i++, row += 3) vec3_store(row, vec3_at(recorder->forces.interfaces[i]));
+  for (int i = 0; i < recorder->told; i++, row += 3) vec3_store(row, vec3_at(recorder->forces.interfaces[i]));
+  row = append_forces_on_bodies(recorder, row);
   if (fem_reactions_any(recorder->system->model))
     TRY(fem_reactions_measure(recorder->system, source.state, &row, NULL));
   const FemSceneDef *scene = recorder->system->model->scene;
   for (int b = 0; b < scene->body_count && !scene->is_static; b++, row += 3)
     fem_momentum_missing(&recorder->ledger.momentum, source.state->time, b, row);
   TRY(fem_forces_take_areas(&recorder->forces, source.state));
-  for (int i = 0; i < count; i++, row += 4) {
+  for (int i = 0; i < recorder->told; i++, row += 4) {
     row[0] = recorder->forces.areas[i];
     vec3_store(row + 1, vec3_at(recorder->forces.centres[i]));
   }
-  TRY(fem_moments_find(recorder->system, source.state, recorder->moments));
-  for (int i = 0; i < count; i++, row += 3) vec3_store(row, vec3_at(recorder->moments[i]));
+  if (recorder->told > 0) TRY(fem_moments_find(recorder->system, source.state, recorder->moments));
+  for (int i = 0; i < recorder->told; i++, row += 3) vec3_store(row, vec3_at(recorder->moments[i]));
   row = append_friction(recorder, row);
   fem_probes_fill(&recorder->probes, row);
   return STATUS_OK;

@@ -24,6 +24,7 @@ typedef struct FemRecorder {
   FemHistoryRows writes_history;
   FemHistory history;
   double *row; // one line of the history
+  int told;    // how many interfaces have columns: all, or none of too many
   int row_capacity;
   FemForces forces; // of the state that was measured last
   FemLedger ledger;

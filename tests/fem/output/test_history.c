@@ -111,6 +111,18 @@ START_TEST(two_columns_of_one_name_are_refused) {
 }
 END_TEST
 
+START_TEST(of_many_columns_the_last_finds_the_first) {
+  enum { MANY = 3000 };
+  FemHistory history;
+  ck_assert_ok(fem_history_create(&history, path));
+  for (int c = 0; c < MANY; c++) ck_assert_ok(fem_history_add_column(&history, "force_%d_x_N", c));
+  for (int c = 0; c < MANY; c += 7)
+    ck_assert_int_eq(fem_history_add_column(&history, "force_%d_x_N", c), STATUS_INPUT);
+  ck_assert_int_eq(history.column_count, MANY);
+  fem_history_destroy(&history);
+}
+END_TEST
+
 START_TEST(rows_reach_the_file_at_once) {
   FemHistory history;
   create_two_columns(&history);
@@ -239,6 +251,7 @@ int main(void) {
   tcase_add_test(cases, numbers_that_are_not_finite_have_a_spelling);
   tcase_add_test(cases, a_title_with_a_comma_is_quoted);
   tcase_add_test(cases, two_columns_of_one_name_are_refused);
+  tcase_add_test(cases, of_many_columns_the_last_finds_the_first);
   tcase_add_test(cases, rows_reach_the_file_at_once);
   tcase_add_test(cases, what_goes_on_is_what_was_not_interrupted);
   tcase_add_test(cases, a_failed_allocation_adds_no_half_row);
