@@ -8,11 +8,10 @@
 #include <string.h>
 #include <sys/resource.h>
 
-// From this size on an array gets memory of its own, large enough to be cleared in no time. [bytes]
-enum { LARGE = 1 << 20 };
-// Arrays below it share the heap, which keeps its pages up to twice as much: what is freed and asked for
-// again, as lists and factors are, would get each page anew, which takes longer than to use it.
-enum { SEPARATE = 4 * LARGE };
+// From this size on an array gets memory of its own, large enough to be cleared in no time. Arrays below it
+// share the heap, which keeps its pages up to twice as much: what is freed and asked for again, as lists and
+// factors are, would get each page anew, which takes longer than to use it. [bytes]
+enum { LARGE = 4 << 20 };
 
 static atomic_long fail_countdown;
 
@@ -88,8 +87,8 @@ void memory_trim(void) {
 void memory_separate(void) {
   enum { MAPS = 65536 }; // the C library's own number
   mallopt(M_MMAP_MAX, MAPS);
-  mallopt(M_MMAP_THRESHOLD, SEPARATE);
-  mallopt(M_TRIM_THRESHOLD, 2 * SEPARATE);
+  mallopt(M_MMAP_THRESHOLD, LARGE);
+  mallopt(M_TRIM_THRESHOLD, 2 * LARGE);
 }
 
 void memory_fail_at(long k) {

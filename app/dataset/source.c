@@ -118,7 +118,7 @@ void app_dataset_source_describe(const AppSourceDef *def, const AppSource *sourc
 bool app_dataset_source_is_paper(const AppSourceDef *def, const AppSource *source) {
   static const char name[] = "paper-test";
   DatagenLaw law;
-  if (!source->dataset) return strcmp(def->law, name) == 0 && !def->volume;
+  if (!source->dataset) return strcmp(def->law, name) == 0 && !def->volume && !def->mix && !(def->swap > 0);
   const DatagenInfo *info = datagen_dataset_info(source->dataset);
   char volume[DATAGEN_VOLUME_TEXT];
   if (strcmp(info->law, name) != 0 || datagen_law_find(name, &law) != STATUS_OK) return false;

@@ -151,16 +151,25 @@ void fem_ledger_record(const FemLedger *ledger, Record *record) {
   for (int p = 0; p < probe_count(ledger); p++) record_readings(ledger, p, record_append(probes));
 }
 
+// Whether a presses more than b, or as much and comes first.
+static bool is_before(const FemAccuracy *accuracy, int a, int b) {
+  double of_a = accuracy->pairs[a].pressed, of_b = accuracy->pairs[b].pressed;
+  return of_a > of_b || (of_a == of_b && a < b);
+}
+
 // The interface of that rank by what it presses; −1: none.
 static int find_rank(const FemAccuracy *accuracy, int rank) {
-  for (int i = 0; i < accuracy->count; i++) {
-    int before = 0;
-    double pressed = accuracy->pairs[i].pressed;
-    for (int k = 0; k < accuracy->count; k++)
-      before += accuracy->pairs[k].pressed > pressed || (accuracy->pairs[k].pressed == pressed && k < i);
-    if (pressed > 0 && before == rank) return i;
+  int found = -1;
+  for (int r = 0; r <= rank; r++) {
+    int next = -1;
+    for (int i = 0; i < accuracy->count; i++)
+      if (accuracy->pairs[i].pressed > 0 && (found < 0 || is_before(accuracy, found, i)) &&
+          (next < 0 || is_before(accuracy, i, next)))
+        next = i;
+    if (next < 0) return -1;
+    found = next;
   }
-  return -1;
+  return found;
 }
 
 // What presses: the resultant, and pressure times area where that is another number.
@@ -244,7 +253,8 @@ static bool are_passages(const FemLedger *ledger, const double *passages, size_t
 
 Status fem_ledger_load(FemLedger *ledger, const double *values, size_t count) {
   const size_t fixed = fixed_count(ledger);
-  if (count < fixed || !are_passages(ledger, values + fixed, count - fixed))
+  if (count < fixed || !fem_momentum_fits(&ledger->momentum, values) ||
+      !are_passages(ledger, values + fixed, count - fixed))
     return status_fail(
         STATUS_INPUT,
         "the checkpoint holds %zu numbers of momentum, contacts and probes that do not fit this "

@@ -93,7 +93,9 @@ static void add_contact(const FemMomentum *momentum, const FemState *state, cons
   add(a, force);
   if (interface->b < momentum->body_count) {
     add(&bodies[interface->b], vec3_scale(-1, force));
-    if (vec3_length(force) > 0) join(groups, interface->a, interface->b);
+    const FemModel *model = momentum->system->model;
+    bool passes_on = !fem_model_is_rigid(model, interface->a) && !fem_model_is_rigid(model, interface->b);
+    if (passes_on && vec3_length(force) > 0) join(groups, interface->a, interface->b);
   } else if (vec3_length(force) > 0)
     a->driven = fmax(a->driven, speed_of_obstacle(momentum, state, interface));
 }
@@ -345,6 +347,15 @@ void fem_momentum_save(const FemMomentum *momentum, double *values) {
     values[6] = momentum->now[b].size;
     values[7] = momentum->groups[b];
   }
+}
+
+bool fem_momentum_fits(const FemMomentum *momentum, const double *values) {
+  for (int b = 0; b < momentum->body_count; b++) {
+    double group = values[b * FEM_MOMENTUM_KEPT + 7];
+    bool is_body = group >= 0 && group <= b && group == floor(group);
+    if (!is_body || values[(int)group * FEM_MOMENTUM_KEPT + 7] != group) return false;
+  }
+  return true;
 }
 
 void fem_momentum_load(FemMomentum *momentum, const double *values) {

@@ -81,6 +81,8 @@ double fem_momentum_largest_gap(const FemMomentum *momentum, double time, int *b
 // What a checkpoint keeps: 8 numbers a body.
 enum { FEM_MOMENTUM_KEPT = 8 };
 void fem_momentum_save(const FemMomentum *momentum, double *values);
+// Whether they can be loaded: a group has the number of its first body.
+bool fem_momentum_fits(const FemMomentum *momentum, const double *values);
 void fem_momentum_load(FemMomentum *momentum, const double *values);
 
 #endif

@@ -90,11 +90,10 @@ static Status note(Proposal *proposal, Status status) {
 
 static Status propose(FemRunState *run, Proposal *proposal) {
   *proposal = (Proposal){.time = run->time};
-  if (has_momentum_bound(run)) {
-    const FemMomentum *momentum = &run->recorder.ledger.momentum;
-    double strictness = fem_momentum_strictness(momentum, run->model->scene->end);
-    fem_integrator_tighten(run->integrator, strictness, momentum->groups);
-  }
+  const FemMomentum *momentum = &run->recorder.ledger.momentum;
+  double end = run->model->scene->end,
+         strictness = has_momentum_bound(run) ? fem_momentum_strictness(momentum, end) : 1;
+  fem_integrator_tighten(run->integrator, strictness, momentum->groups);
   Status status = step(run, proposal);
   if (!status) status = audit(run, proposal);
   return note(proposal, status);

@@ -50,7 +50,7 @@ static FemErrorGroup *group_of(FemErrorGroup *all, const int *groups, int body) 
 // The momenta and masses of the groups.
 static void find_momenta(const FemModel *model, const FemPart *part, const int *groups, const double *v,
                          FemErrorGroup *all) {
-  for (int b = 0, begin = 0, end; b < model->body_count; b++, begin = end) {
+  for (int b = 0, begin = 0, end; b < model->scene->body_count; b++, begin = end) {
     FemErrorGroup *group = group_of(all, groups, b);
     find_end(model, part, b, begin, &end);
     for (int i = begin; i < end; i++) {
@@ -58,17 +58,17 @@ static void find_momenta(const FemModel *model, const FemPart *part, const int *
       group->p[dof % 3] += model->mass[dof / 3] * v[i];
     }
   }
-  for (int g = 0; g < model->body_count; g++) ranks()->sum(all[g].p, 3);
-  for (int b = 0; b < model->body_count; b++) group_of(all, groups, b)->mass += model->bodies[b].mass;
+  ranks()->sum(&all->mass, sizeof *all / sizeof all->mass * (size_t)model->scene->body_count); // numbers only
+  for (int b = 0; b < model->scene->body_count; b++) group_of(all, groups, b)->mass += model->bodies[b].mass;
 }
 
 static void find_speeds(const FemModel *model, const FemPart *part, const int *groups, const double *v,
                         FemErrorGroup *all) {
   const double released = part->numbering->released;
-  for (int b = 0; b < model->body_count; b++) all[b] = (FemErrorGroup){0};
+  for (int b = 0; b < model->scene->body_count; b++) all[b] = (FemErrorGroup){0};
   if (vec3_length(fem_model_common_part(model, released, (Vec3){1, 1, 1})) > 0)
     find_momenta(model, part, groups, v, all);
-  for (int b = 0, begin = 0, end; b < model->body_count; b++, begin = end) {
+  for (int b = 0, begin = 0, end; b < model->scene->body_count; b++, begin = end) {
     FemErrorGroup *group = group_of(all, groups, b);
     double common[3] = {0};
     if (group->mass > 0)
@@ -82,7 +82,7 @@ static void find_speeds(const FemModel *model, const FemPart *part, const int *g
 void fem_error_weights(const FemErrorTolerance *tolerance, const FemModel *model, const FemPart *part,
                        const int *groups, const double *v, FemErrorGroup *scratch, double *weights) {
   if (tolerance->speed_share > 0) find_speeds(model, part, groups, v, scratch);
-  for (int b = 0, begin = 0, end; b < model->body_count; b++, begin = end) {
+  for (int b = 0, begin = 0, end; b < model->scene->body_count; b++, begin = end) {
     find_end(model, part, b, begin, &end);
     double velocity = tolerance->velocity;
     if (tolerance->speed_share > 0) {

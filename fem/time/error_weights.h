@@ -6,8 +6,8 @@
 // velocity may err by `speed_share` of the present speed of the fastest body of its group, and by `velocity`
 // at least. A group are bodies that have pressed each other; others' speeds are nothing to a body. Its speed
 // is the root mean square over its mass, relative to the common velocity of the group (fem/model/floating.h).
-// It counts up to the √(E/ρ), the speed of waves, of the body whose velocity may err. All this is a function
-// of the state, so a resumed run has the same weights.
+// It counts up to the √(E/ρ), the speed of waves, of the body whose velocity may err. Groups are part of
+// what a checkpoint keeps, so a resumed run has the same weights.
 #ifndef TETLAP_FEM_TIME_ERROR_WEIGHTS_H
 #define TETLAP_FEM_TIME_ERROR_WEIGHTS_H
 
@@ -20,9 +20,10 @@ typedef struct FemErrorTolerance {
   double speed_share;  // of the fastest body's speed; 0: `velocity` is all
 } FemErrorTolerance;
 
+// Numbers only, which ranks add up.
 typedef struct FemErrorGroup {
-  double p[3];  // [kg m/s]
   double mass;  // [kg]
+  double p[3];  // [kg m/s]
   double speed; // of its fastest body [m/s]
 } FemErrorGroup;
 

@@ -59,14 +59,15 @@ static Status add_model(AppComparison *comparison, const FemSceneDef *scene, con
                         bool is_driven) {
   if (comparison->model_count == APP_MAX_MODELS)
     return status_fail(STATUS_USAGE, "at most %d models can be compared", APP_MAX_MODELS);
+  const char *option = is_driven ? "--overlap" : "--audit-only";
   AppComparisonModel *model = &comparison->models[comparison->model_count];
   Status status = fem_effect_contact_create_overlap(scene, source, &model->overlap);
-  if (status) return status == STATUS_INPUT ? status_prefix(STATUS_USAGE, "--overlap") : status;
+  if (status) return status == STATUS_INPUT ? status_prefix(STATUS_USAGE, "%s", option) : status;
   model->source = source;
   model->is_driven = is_driven;
   comparison->model_count++;
   if (fem_effect_contact_check_overlap(scene, source, &model->overlap))
-    return status_prefix(STATUS_INPUT, "%s", is_driven ? "--overlap" : "--audit-only");
+    return status_prefix(STATUS_INPUT, "%s", option);
   return STATUS_OK;
 }
 

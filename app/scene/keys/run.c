@@ -35,7 +35,8 @@ static const SceneKey time_keys[] = {
          "0.03 · `tolerance` · √(E/ρ) of the slowest body (factor 1 with friction in self-contact) or, if "
          "smaller, 0.3 · `tolerance` times the fastest speed at t = 0 or, with gravity, √(g L), L the "
          "smallest body's size; with contact, if larger, 5 · `tolerance` times the present speed of the "
-         "fastest body that it has pressed, at most `tolerance` · √(E/ρ) of the body itself; without contact 33 times as much",
+         "fastest body that it has pressed, at most `tolerance` · √(E/ρ) of the body itself; without contact "
+         "33 times as much",
      .help = "error of the velocities per step"},
     {"max_step", SCENE_NUMBER, AT(FemSceneDef, max_step), .unit = "s", .range = "(0, inf)",
      .absent_help = "0.1 of `end`", .help = "longest step"},

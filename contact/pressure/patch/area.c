@@ -40,7 +40,7 @@ static const double MEAN_BULGE = 0.75; // not chosen: with q along each edge, Σ
 // convex, and so are their gaps along any line. Then corners in the shape have all between them there, and
 // none is less than three times that of the middle without twice the largest. What the linear gap of the
 // corners is above the true one is concave, so nowhere more than three times that at the middle, its bulge. A
-// linear gap of the range r has no more than 2 δ/r of a triangle within δ of 0.
+// linear gap of the range r has no more than 2 δ/r of a triangle between 0 and δ.
 static bool is_told(const ContactShape *shape, const Triangle *triangle, double area, double least,
                     double *inside) {
   const double *gaps = triangle->gaps;

@@ -41,7 +41,7 @@ static Status no_memory(void) {
   return status_no_memory("the factor of the condensed system (try solver.linear: pcg)");
 }
 
-// Numbers of any value. An eighth is to spare, which takes no memory before it is used.
+// Numbers of any value. An eighth is to spare.
 static bool make_room(void *array, size_t *room, size_t wanted, size_t size) {
   void **at = array;
   if (*at && wanted <= *room) return true;
@@ -109,7 +109,9 @@ static Status make_stacks(FemFrontFactor *factor, int count) {
   for (int t = 0; t < count; t++) {
     factor->stacks[t] = memory_zeroed(factor->room.stack, sizeof **factor->stacks);
     factor->stack_count = t + 1;
-    if (!factor->stacks[t]) return no_memory();
+    if (factor->stacks[t]) continue;
+    free_stacks(factor);
+    return no_memory();
   }
   return STATUS_OK;
 }

@@ -134,7 +134,7 @@ function forcePlots(runs) {
     const series = runs.flatMap((run) => run.forces.slice(0, MAX_FORCES).map((force, hue) => seriesOf(run, force, force.label, hue)));
     return [{ ...plot, series: [...series, ...peakSeries(runs)] }];
   }
-  const keys = [...new Set(runs.flatMap((run) => run.forces.map((force) => force.key)))];
+  const keys = [...new Set(runs.flatMap((run) => run.forces).sort((a, b) => b.most - a.most).map((force) => force.key))];
   const peaks = isPair(runs) ? peakSeries(runs, keys.length > 1 ? "largest since the last row, of any two" : undefined) : [];
   return keys.slice(0, MAX_FORCE_PLOTS).map((key, k) => {
     const owners = runs.flatMap((run) => run.forces.filter((force) => force.key === key).map((force) => ({ run, force })));

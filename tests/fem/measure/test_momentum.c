@@ -96,6 +96,12 @@ START_TEST(a_step_that_is_taken_back_leaves_no_trace) {
   fem_momentum_load(&falling.momentum, kept);
   fem_momentum_save(&falling.momentum, again);
   for (int k = 0; k < FEM_MOMENTUM_KEPT; k++) ck_assert(kept[k] == again[k]);
+  const double wrong[] = {1, -1, 0.5, NAN};
+  ck_assert(fem_momentum_fits(&falling.momentum, kept));
+  for (int k = 0; k < 4; k++) {
+    kept[FEM_MOMENTUM_KEPT - 1] = wrong[k]; // the group of the only body
+    ck_assert(!fem_momentum_fits(&falling.momentum, kept));
+  }
   close_falling(&falling);
 }
 END_TEST
@@ -221,7 +227,8 @@ START_TEST(contact_reactions_and_loads_are_balanced) {
 END_TEST
 
 // A stack lands on itself and on the ground, with friction, and steps that are too long for that are taken
-// back: or else 8e-3 would be missing here. What a ball that is still in the air may yet transfer is no excuse.
+// back: or else 8e-3 would be missing here. What a ball that is still in the air may yet transfer is no
+// excuse.
 START_TEST(a_stack_that_lands_is_balanced) {
   SceneRun run;
   scene_run(&run, "../../examples/15_sleepers",

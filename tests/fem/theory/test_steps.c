@@ -150,6 +150,28 @@ START_TEST(a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_b
 }
 END_TEST
 
+START_TEST(what_a_mesh_obstacle_is_made_of_is_no_body_here) {
+  SceneRun run;
+  scene_open(&run, "tiles", NULL);
+  int n = run.model.free_count, bodies = run.scene.body_count;
+  ck_assert_int_gt(run.model.body_count, bodies);
+  FemPart part;
+  FemNumbering numbering;
+  ck_assert_ok(fem_numbering_create(&numbering, &run.model));
+  ck_assert_ok(fem_part_create(&part, &run.model, &numbering));
+  double *v = calloc((size_t)n, sizeof *v), *weights = calloc(2 * (size_t)n, sizeof *weights);
+  FemErrorGroup *groups = calloc((size_t)bodies + 1, sizeof *groups);
+  groups[bodies].speed = -1;
+  FemErrorTolerance tolerance = {.displacement = 1e-5, .velocity = 1e-6, .speed_share = 1e-3};
+  fem_error_weights(&tolerance, &run.model, &part, NULL, v, groups, weights);
+  ck_assert_double_eq(groups[bodies].speed, -1);
+  for (int i = 0; i < n; i++) ck_assert_near(weights[n + i], 1e6, 1);
+  free(v), free(weights), free(groups);
+  fem_numbering_destroy(&numbering);
+  scene_close(&run);
+}
+END_TEST
+
 START_TEST(a_tolerance_that_the_scene_gives_is_all_there_is) {
   const char *const given[] = {"time.velocity_tolerance=1e-3", "time.tolerance=1e-4"};
   for (int k = 0; k < 2; k++) {
@@ -231,6 +253,7 @@ int main(void) {
   tcase_add_test(cases, a_wedge_is_thrown_out_of_a_gap_and_flies_on_without_short_steps);
   tcase_add_test(cases, an_onset_restarts_nothing_and_gains_no_energy);
   tcase_add_test(cases, a_velocity_may_err_by_a_share_of_the_fastest_bodys_speed_within_its_bounds);
+  tcase_add_test(cases, what_a_mesh_obstacle_is_made_of_is_no_body_here);
   tcase_add_test(cases, a_tolerance_that_the_scene_gives_is_all_there_is);
   tcase_add_test(cases, a_common_velocity_of_bodies_that_float_changes_nothing);
   tcase_add_test(cases, a_common_velocity_along_a_plane_changes_nothing);
