@@ -229,15 +229,11 @@ static Status rub(const FemTangent *tangent, void *stick, Side *side) {
   return fem_effect_stick.advance(stick, state, &side->history);
 }
 
-// Friction on that contact; of the system all else stays.
+// Friction on that contact.
 static Status rub_between(const FemTangent *tangent, const FemModel *model, void *contact, Side *side) {
-  FemSystem system = *tangent->system;
-  void *stick = NULL;
-  TRY(fem_effect_stick.create(&stick, model));
-  system.effects[fem_system_place(&system, &fem_effect_contact)].self = contact;
-  system.effects[fem_system_place(&system, &fem_effect_stick)].self = stick;
-  Status status = fem_effect_stick.connect(stick, &system);
-  if (!status) status = rub(tangent, stick, side);
+  void *stick;
+  TRY(fem_effect_stick_create_like(&stick, model, contact, tangent->stick));
+  Status status = rub(tangent, stick, side);
   fem_effect_stick.destroy(stick);
   return status;
 }

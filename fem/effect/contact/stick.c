@@ -32,30 +32,38 @@ static Status create(void **self, const FemModel *model) {
   return STATUS_OK;
 }
 
-static Status create_law(Stick *stick, int count, ContactStickLaw *laws) {
-  const FemModel *model = stick->model;
-  const ContactInterfaceDef *interfaces = contact_system_layout(stick->contact)->interfaces;
-  for (int i = 0; i < count; i++) {
-    const FemFrictionDef friction = fem_compliance_friction(model, interfaces[i].a, interfaces[i].b);
+// Its laws are copied.
+static Status connect_to(Stick *stick, ContactSystem *contact, int place, const ContactStickLaw *laws) {
+  const ContactSystemDef *def = &contact_system_layout(contact)->def;
+  int count = contact_system_layout(contact)->interface_count;
+  stick->place = place;
+  stick->contact = contact;
+  stick->is_resting = memory_zeroed((size_t)count, sizeof *stick->is_resting);
+  if (!stick->is_resting) return status_no_memory("friction");
+  TRY(contact_stick_create(&stick->law, def->vertex_count, def->rest, def->tets, count, laws));
+  stick->law.stars = contact_system_stars(contact);
+  return STATUS_OK;
+}
+
+static void choose_laws(const FemModel *model, const ContactSystem *contact, ContactStickLaw *laws) {
+  const ContactLayout *layout = contact_system_layout(contact);
+  for (int i = 0; i < layout->interface_count; i++) {
+    const FemFrictionDef friction =
+        fem_compliance_friction(model, layout->interfaces[i].a, layout->interfaces[i].b);
     laws[i] = (ContactStickLaw){
         .friction = friction.coefficient, .at_rest = friction.at_rest, .length = friction.length};
   }
-  contact_stick_pairs_laws(stick->contact, laws);
-  const ContactSystemDef *def = &contact_system_layout(stick->contact)->def;
-  TRY(contact_stick_create(&stick->law, def->vertex_count, def->rest, def->tets, count, laws));
-  stick->law.stars = contact_system_stars(stick->contact);
-  return STATUS_OK;
+  contact_stick_pairs_laws(contact, laws);
 }
 
 static Status connect(void *self, const FemSystem *system) {
   Stick *stick = self;
-  stick->place = fem_system_place(system, &fem_effect_stick);
-  stick->contact = fem_effect_contact_system(fem_system_effect(system, &fem_effect_contact));
-  int count = contact_system_layout(stick->contact)->interface_count;
-  stick->is_resting = memory_zeroed((size_t)count, sizeof *stick->is_resting);
-  ContactStickLaw *laws = memory_zeroed((size_t)count, sizeof *laws);
-  bool has_room = stick->is_resting && laws;
-  Status status = has_room ? create_law(stick, count, laws) : status_no_memory("friction");
+  ContactSystem *contact = fem_effect_contact_system(fem_system_effect(system, &fem_effect_contact));
+  ContactStickLaw *laws =
+      memory_zeroed((size_t)contact_system_layout(contact)->interface_count, sizeof *laws);
+  if (!laws) return status_no_memory("friction");
+  choose_laws(stick->model, contact, laws);
+  Status status = connect_to(stick, contact, fem_system_place(system, &fem_effect_stick), laws);
   memory_free(laws);
   return status;
 }
@@ -65,6 +73,14 @@ static void destroy(void *self) {
   contact_stick_destroy(&stick->law);
   memory_free(stick->is_resting);
   memory_free(stick);
+}
+
+Status fem_effect_stick_create_like(void **self, const FemModel *model, void *contact, const void *of) {
+  const Stick *other = of;
+  TRY(create(self, model));
+  Status status = connect_to(*self, fem_effect_contact_system(contact), other->place, other->law.laws);
+  if (status) destroy(*self);
+  return status;
 }
 
 int fem_effect_stick_place(const void *effect) {

@@ -6,6 +6,11 @@
 #include "contact/friction/stick_pull.h"
 #include "contact/friction/stick_told.h"
 #include "fem/effect/state.h"
+#include "fem/model/model.h"
+
+// Friction of a model that has the same bodies in another shape, on its contact effect `contact` (borrowed),
+// with the laws and the slaves that the effect `of` has. Destroy it as the effect's operations say.
+Status fem_effect_stick_create_like(void **self, const FemModel *model, void *contact, const void *of);
 
 // The law of the effect that fem_system_effect(system, &fem_effect_stick) returned, as it is at a state; the
 // effect's, valid until it is asked for another one.

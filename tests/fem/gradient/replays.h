@@ -14,6 +14,7 @@ typedef struct Asked {
   const char *of[MOST], *by[MOST]; // ended by NULL
   double tolerance;                // relative to g/p, or to dg/dp where that is more; 0: 1e-6
   double step;                     // of the differences, relative; 0: 1e-4
+  bool is_forward;                 // their points are on one side
   bool by_weights;
   int least_steps;          // of the run; 0: 20
   long long least_switches; // between sticking and slipping
@@ -66,19 +67,21 @@ static inline void replay(const Asked *asked, const FemReplaySteps *steps, const
   scene_close(&scene);
 }
 
-// p ∂g/∂p of every goal by differences of the fourth order.
+// p ∂g/∂p of every goal by differences of the fourth order, forwards of the third.
 static inline void differ(const Asked *asked, const FemReplaySteps *steps, const char *key, double middle,
                           double size, double shares[MOST]) {
-  static const double places[] = {-2, -1, 1, 2};
-  static const double weights[] = {1.0 / 12, -2.0 / 3, 2.0 / 3, -1.0 / 12};
+  static const double places[2][4] = {{-2, -1, 1, 2}, {0, 1, 2, 3}};
+  static const double weights[2][4] = {{1.0 / 12, -2.0 / 3, 2.0 / 3, -1.0 / 12},
+                                       {-11.0 / 6, 3, -3.0 / 2, 1.0 / 3}};
   double step = asked->step > 0 ? asked->step : 1e-4;
   memset(shares, 0, MOST * sizeof *shares);
   for (int k = 0; k < 4; k++) {
     char override[256];
     Answer answer;
-    snprintf(override, sizeof override, "%s=%.17g", key, middle + places[k] * step * size);
+    snprintf(override, sizeof override, "%s=%.17g", key, middle + places[asked->is_forward][k] * step * size);
     replay(asked, steps, override, false, &answer);
-    for (int g = 0; g < answer.goal_count; g++) shares[g] += weights[k] / step * answer.gradient.values[g];
+    for (int g = 0; g < answer.goal_count; g++)
+      shares[g] += weights[asked->is_forward][k] / step * answer.gradient.values[g];
     destroy(&answer);
   }
 }

@@ -20,6 +20,21 @@ START_TEST(rubbed_blocks_agree_by_scale_with_differences_of_replays) {
 }
 END_TEST
 
+// Of two bodies of one size the first is the slave, which stays where the second one grows.
+START_TEST(blocks_of_one_size_agree_by_scale_with_differences_of_replays) {
+  const Asked asked = {.scene = "gradient_rub",
+                       .setting = "time.end=1",
+                       .overlap = "bodies.upper.mesh.box.size=[1, 1, 0.5]",
+                       .step = 1e-5,
+                       .is_forward = true,
+                       .least_steps = 7,
+                       .least_switches = 20,
+                       .of = {"displacement:lower:x", "force:upper:lower:x", "energy"},
+                       .by = {UPPER "scale"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
 START_TEST(a_slab_between_obstacles_agrees_by_scale_with_differences_of_replays) {
   const Asked asked = {
       .scene = "gradient_drag",
@@ -93,6 +108,7 @@ END_TEST
 int main(void) {
   TCase *test_case = tcase_create("gradient_shape_friction");
   tcase_add_test(test_case, rubbed_blocks_agree_by_scale_with_differences_of_replays);
+  tcase_add_test(test_case, blocks_of_one_size_agree_by_scale_with_differences_of_replays);
   tcase_add_test(test_case, a_slab_between_obstacles_agrees_by_scale_with_differences_of_replays);
   tcase_add_test(test_case, a_thrown_block_that_sticks_and_slips_agrees_by_scale_with_differences_of_replays);
   tcase_add_test(test_case, bodies_under_following_pressures_agree_by_scale_with_differences_of_replays);
