@@ -270,7 +270,7 @@ static Status reshape(FemChange *change, const FemTangent *tangent, const FemPar
   fem_shape_rest(tangent->system->model, parameter, change->rests);
   carry(change, tangent);
   if (!(tangent->state->time > 0)) return STATUS_OK; // where a path begins, at rest
-  TRY(fem_shape_derive(&change->shape, tangent, change->rests));
+  TRY(fem_shape_derive(&change->shape, tangent, parameter->body, change->rests));
   size_t values = values_of(tangent);
   for (size_t i = 0; i < values; i++) change->force[i] += change->shape.force[i];
   memcpy(change->masses, change->shape.masses, values / 3 * sizeof(double));

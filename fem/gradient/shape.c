@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fem/gradient/shape.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -270,21 +271,44 @@ static Status evaluate_there(const FemTangent *tangent, Side *side) {
                         : STATUS_OK;
 }
 
-// `sides`: behind, there, ahead.
-static Status judge_kinks(const FemTangent *tangent, const Side sides[3], size_t values) {
+// By how much rounding changes the second difference of an interface's forces [N]. A pair that is D = V/A
+// deep changes by F/D for each metre. A point of a cell is a sum over 4 vertices, whose weights and products
+// are rounded by ε/2 each; the difference has it twice.
+static double rounding_of(const ContactEvaluation *evaluation, int interface, double largest_coordinate) {
+  double slope = 0;
+  for (int k = 0; k < evaluation->pair_count; k++) {
+    const ContactFieldPair *field = &evaluation->fields[k];
+    if (evaluation->pairs[k].interface == interface)
+      slope += vec3_length(vec3_at(field->force)) * contact_field_area(field) / field->volume;
+  }
+  return 2 * 4 * DBL_EPSILON * largest_coordinate * slope;
+}
+
+static double largest_coordinate_of(const FemTangent *tangent, const FemModelBody *body) {
+  double largest = 0;
+  for (int i = 3 * body->vertex_begin; i < 3 * body->vertex_end; i++)
+    largest = fmax(largest, fabs(tangent->state->positions[i]));
+  return largest;
+}
+
+// `sides`: behind, there, ahead, of another shape of that body.
+static Status judge_kinks(const FemTangent *tangent, const FemModelBody *body,
+                          const ContactEvaluation *evaluation, const Side sides[3], size_t values) {
   const double *behind = sides[0].pressing, *there = sides[1].pressing, *ahead = sides[2].pressing;
+  double coordinate = largest_coordinate_of(tangent, body);
   for (int i = 0; i < tangent->interface_count; i++) {
     double largest = 0, kink = 0;
     for (size_t k = values * (size_t)i; k < values * (size_t)(i + 1); k++) {
       largest = fmax(largest, fabs(there[k]));
       kink = fmax(kink, fabs(behind[k] - 2 * there[k] + ahead[k]) / 2);
     }
-    if (!(kink <= LEAST_KINK * STRAIN_OF_CONTACT * largest))
+    double least = fmax(LEAST_KINK * STRAIN_OF_CONTACT * largest, rounding_of(evaluation, i, coordinate));
+    if (!(kink <= least))
       return status_fail(
           STATUS_INPUT,
           "contact of '%s' has no derivative by this shape: a vertex inside is equally far from two faces of "
           "the surface. Take a mesh where it is not, or scale all axes together (place.scale)",
-          tangent->system->model->bodies[fem_tangent_interface(tangent, i)->a].name);
+          body->name);
   }
   return STATUS_OK;
 }
@@ -316,7 +340,8 @@ static Status derive_history(FemShape *shape, const FemTangent *tangent, const S
 }
 
 // Bodies that are apart do not press, wherever they rest.
-static Status derive_contact(FemShape *shape, const FemTangent *tangent, const double *rests, double strain) {
+static Status derive_contact(FemShape *shape, const FemTangent *tangent, const FemModelBody *body,
+                             const double *rests, double strain) {
   const ContactEvaluation *evaluation;
   TRY(fem_effect_contact_evaluate(tangent->system, tangent->state, &evaluation));
   if (evaluation->pair_count == 0) return STATUS_OK;
@@ -330,7 +355,7 @@ static Status derive_contact(FemShape *shape, const FemTangent *tangent, const d
   if (!status) status = evaluate_there(tangent, &sides[1]);
   for (int k = 0; k < 3 && !status; k += 2)
     status = evaluate_contact(tangent, rests, (k - 1) * step, &sides[k]);
-  if (!status) status = judge_kinks(tangent, sides, values);
+  if (!status) status = judge_kinks(tangent, body, evaluation, sides, values);
   for (size_t i = 0; i < values * count && !status; i++)
     shape->contact[i] = (sides[2].forces[i] - sides[0].forces[i]) / (2 * step);
   for (size_t i = 0; i < count && !status; i++)
@@ -358,10 +383,11 @@ static Status derive_bulk(FemShape *shape, const FemTangent *tangent, const doub
   return status;
 }
 
-Status fem_shape_derive(FemShape *shape, const FemTangent *tangent, const double *rests) {
-  double strain = strain_of(tangent->system->model, rests);
+Status fem_shape_derive(FemShape *shape, const FemTangent *tangent, int body, const double *rests) {
+  const FemModel *model = tangent->system->model;
+  double strain = strain_of(model, rests);
   TRY(derive_bulk(shape, tangent, rests, strain));
-  return tangent->contact ? derive_contact(shape, tangent, rests, strain) : STATUS_OK;
+  return tangent->contact ? derive_contact(shape, tangent, &model->bodies[body], rests, strain) : STATUS_OK;
 }
 
 Status fem_shape_add_masses(const FemModel *model, const double *rests, double *masses) {

@@ -25,9 +25,9 @@ typedef struct FemShape {
 // ∂X/∂p of a body's place or of a parameter of its shape (fem_parameter_moves_rest), of others 0, into
 // `rests` (vertex_count, 3).
 void fem_shape_rest(const FemModel *model, const FemParameter *parameter, double *rests);
-// Fills a zeroed one, at the tangent's state. STATUS_INPUT: contact has a kink there. Destroy it also after a
-// failure.
-Status fem_shape_derive(FemShape *shape, const FemTangent *tangent, const double *rests);
+// Fills a zeroed one of that body, at the tangent's state. STATUS_INPUT: contact has a kink there. Destroy it
+// also after a failure.
+Status fem_shape_derive(FemShape *shape, const FemTangent *tangent, int body, const double *rests);
 void fem_shape_destroy(FemShape *shape); // also of a zeroed one
 // Adds ∂m/∂p of all vertices (vertex_count).
 Status fem_shape_add_masses(const FemModel *model, const double *rests, double *masses);

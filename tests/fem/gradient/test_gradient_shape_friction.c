@@ -60,6 +60,23 @@ START_TEST(a_thrown_block_that_sticks_and_slips_agrees_by_scale_with_differences
 }
 END_TEST
 
+// Of an overlap of 1e-10 m second differences of forces are rounding.
+START_TEST(a_block_that_barely_touches_agrees_by_scale_with_differences_of_replays) {
+  const Asked asked = {
+      .scene = "gradient_slide",
+      .setting = "time.end=0.0002",
+      .overlap = "bodies.upper={name: upper, mesh: {box: {size: [0.12, 0.11, 0.1], cells: [2, 1, 1]}}, "
+                 "place: {translate: [0.03, 0.04, 0.0999999999]}, material: {law: stvk, young: 2e5, poisson: "
+                 "0.2, density: 1200}}",
+      .step = 1e-3,
+      .tolerance = 1e-4, // rounding
+      .least_steps = 10,
+      .of = {"force:upper:lower:z"},
+      .by = {UPPER "scale"}};
+  check_against_replays(&asked);
+}
+END_TEST
+
 START_TEST(bodies_under_following_pressures_agree_by_scale_with_differences_of_replays) {
   const Asked asked = {
       .scene = "gradient_inflate",
@@ -111,6 +128,7 @@ int main(void) {
   tcase_add_test(test_case, blocks_of_one_size_agree_by_scale_with_differences_of_replays);
   tcase_add_test(test_case, a_slab_between_obstacles_agrees_by_scale_with_differences_of_replays);
   tcase_add_test(test_case, a_thrown_block_that_sticks_and_slips_agrees_by_scale_with_differences_of_replays);
+  tcase_add_test(test_case, a_block_that_barely_touches_agrees_by_scale_with_differences_of_replays);
   tcase_add_test(test_case, bodies_under_following_pressures_agree_by_scale_with_differences_of_replays);
   tcase_add_test(test_case, a_stiffness_that_is_chosen_is_kept);
   return suite_run("gradient_shape_friction", test_case, 300);
