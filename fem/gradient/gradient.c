@@ -379,7 +379,7 @@ Status fem_gradient_pass(FemGradient *gradient, const FemGradientDef *def, int p
   if (status != STATUS_INPUT || !fem_parameter_is_of_shape(&def->parameters[p])) return status;
   const char *why = status_message();
   gradient->kink_count++;
-  if (gradient->kink_count == def->parameter_count) return status;
+  if (gradient->kink_count == def->parameter_count && !def->by_weights) return status;
   gradient->kinks[p] = memory_copy(why, strlen(why) + 1, 1);
   for (int g = 0; g < def->goal_count; g++) gradient->derivatives[g * def->parameter_count + p] = NAN;
   return gradient->kinks[p] ? STATUS_OK : status_no_memory("a gradient");

@@ -56,7 +56,7 @@ Status fem_gradient_find(FemGradient *gradient, FemSystem *system, const FemGrad
 // Room for the results, all 0.
 Status fem_gradient_create(FemGradient *gradient, const FemGradientDef *def);
 // The status of finding what parameter p changes. A kink by a body's shape (fem_shape_derive) is noted and
-// passes while another parameter has no kink.
+// passes while another parameter has no kink, or derivatives by weights are asked for.
 Status fem_gradient_pass(FemGradient *gradient, const FemGradientDef *def, int p, Status status);
 // Room for those by weights, if they are asked for.
 Status fem_gradient_make_weights(FemGradient *gradient, const FemModel *model, const FemGradientDef *def);

@@ -143,7 +143,10 @@ END_TEST
 START_TEST(a_kink_of_the_depth_is_told_and_a_common_factor_has_none) {
   const char *cells = "bodies.lower.mesh.box.cells=[4, 4, 2]", *up = "displacement:upper:z";
   const Asked asked = {.scene = "gradient_blocks", .setting = cells, .of = {up}, .by = {LOWER "scale"}};
+  expect_refusal("gradient_blocks", cells, up, LOWER "scale[2]", "contact of 'lower'");
   expect_refusal("gradient_blocks", cells, up, LOWER "scale[2]", "equally far from two faces");
+  expect_refusal("gradient_blocks", "bodies.upper.mesh.box={size: [1, 1, 0.5], cells: [4, 4, 2]}", up,
+                 UPPER "scale[2]", "contact of 'upper'");
   check_against_runs(&asked);
 }
 END_TEST
@@ -169,6 +172,24 @@ START_TEST(a_kink_by_one_key_is_told_beside_the_derivatives_by_others) {
 }
 END_TEST
 
+START_TEST(a_kink_by_a_key_leaves_derivatives_by_weights) {
+  const Asked asked = {.scene = "gradient_blocks",
+                       .setting = "bodies.lower.mesh.box.cells=[4, 4, 2]",
+                       .of = {"displacement:upper:z"},
+                       .by = {LOWER "scale[2]"},
+                       .by_weights = true};
+  Answer answer;
+  double largest = 0;
+  ck_assert_ok(run(&asked, "contact.overlap=geo-small", &answer));
+  ck_assert_ptr_nonnull(answer.gradient.kinks[0]);
+  ck_assert(isnan(answer.gradient.derivatives[0]));
+  for (size_t w = 0; w < answer.gradient.weight_count; w++)
+    largest = fmax(largest, fabs(answer.gradient.weights[w]));
+  ck_assert_double_gt(largest, 0);
+  destroy(&answer);
+}
+END_TEST
+
 int main(void) {
   TCase *test_case = tcase_create("gradient_shape");
   tcase_add_checked_fixture(test_case, folder_make, folder_remove);
@@ -184,5 +205,6 @@ int main(void) {
   tcase_add_test(test_case, what_has_no_derivative_by_shape_is_refused);
   tcase_add_test(test_case, a_kink_of_the_depth_is_told_and_a_common_factor_has_none);
   tcase_add_test(test_case, a_kink_by_one_key_is_told_beside_the_derivatives_by_others);
+  tcase_add_test(test_case, a_kink_by_a_key_leaves_derivatives_by_weights);
   return suite_run("gradient_shape", test_case, 300);
 }
