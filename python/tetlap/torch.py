@@ -129,7 +129,7 @@ class _Run(torch.autograd.Function):
             found = _run_with(scene, keys, of, overrides + of_values, at, card, dict(zip(names, values[len(keys):])))
             ctx.tensors = {name: torch.stack([torch.from_numpy(slope[name]) for slope in found["weights"]]) for name in names}
         for key, why in found["no_derivative"].items():
-            raise RunError(f"{key}: {why}", 64, None)
+            raise RunError(f"{key}: {why}", 65, None)
         if found["contact_stiffness"] == "follows":
             _warn_of_choice(keys)
         ctx.derivative, ctx.dtypes = torch.from_numpy(found["derivative"]), [value.dtype for value in values]
