@@ -86,6 +86,12 @@ static void join(int *groups, int a, int b) {
   groups[first > second ? first : second] = first < second ? first : second;
 }
 
+// What is held or driven as a whole does not.
+static bool passes_on(const FemMomentum *momentum, const ContactInterface *interface) {
+  const FemModel *model = momentum->system->model;
+  return !fem_model_is_rigid(model, interface->a) && !fem_model_is_rigid(model, interface->b);
+}
+
 static void add_contact(const FemMomentum *momentum, const FemState *state, const ContactInterface *interface,
                         Vec3 force, FemMomentumBody *bodies, int *groups) {
   FemMomentumBody *a = &bodies[interface->a];
@@ -93,9 +99,7 @@ static void add_contact(const FemMomentum *momentum, const FemState *state, cons
   add(a, force);
   if (interface->b < momentum->body_count) {
     add(&bodies[interface->b], vec3_scale(-1, force));
-    const FemModel *model = momentum->system->model;
-    bool passes_on = !fem_model_is_rigid(model, interface->a) && !fem_model_is_rigid(model, interface->b);
-    if (passes_on && vec3_length(force) > 0) join(groups, interface->a, interface->b);
+    if (vec3_length(force) > 0 && passes_on(momentum, interface)) join(groups, interface->a, interface->b);
   } else if (vec3_length(force) > 0)
     a->driven = fmax(a->driven, speed_of_obstacle(momentum, state, interface));
 }
