@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "base/random.h"
+#include "fem/model/compliance/compliance.h"
+#include "fem/model/limits.h"
 
 enum { TEXT_SIZE = 256, SEED = 35 };
 // Shares of a parameter by which it differs between two runs. A motion chooses its steps anew, which
@@ -72,27 +74,63 @@ typedef struct Direction {
   double ways[APP_GRADIENT_MOST]; // of each parameter, in its unit
 } Direction;
 
-// Whether another run can differ by this parameter alone: --set has no rest positions, and a contact
-// stiffness that is chosen changes with shape.
-static bool can_differ(const FemParameter *parameter, const char *stiffness) {
-  bool is_kept = strcmp(stiffness, "kept") == 0, is_chosen = is_kept || strcmp(stiffness, "follows") == 0;
-  bool chooses = parameter->kind == FEM_PARAMETER_YOUNG || parameter->kind == FEM_PARAMETER_POISSON;
-  if (parameter->kind == FEM_PARAMETER_REST) return false;
-  return fem_parameter_is_of_shape(parameter) ? !is_chosen : !(chooses && is_kept);
+// Whether what can meet does so with another stiffness or level of smoothness.
+static bool differs(const FemModel *model, const FemCompliance *one, const FemCompliance *other) {
+  for (int a = 0; a < model->body_count; a++) {
+    if (one->levels[a] != other->levels[a]) return true;
+    for (int b = 0; b < one->party_count; b++) {
+      double own = one->stiffness[a * one->party_count + b], now = other->stiffness[a * one->party_count + b];
+      if (fem_compliance_meets(model, a, b) && !(fabs(now - own) <= FEM_ROUNDING * own)) return true;
+    }
+  }
+  return false;
 }
 
-static Direction draw_direction(const FemModel *model, const AppGradientWords *words,
-                                const AppGradientAnswer *answer) {
-  Direction direction = {.step = model->scene->is_static ? OF_STATIC : OF_MOTION};
+static Status compare_choices(const FemModel *model, const FemModel *changed, bool *has_changed) {
+  FemCompliance own, now;
+  TRY(fem_compliance_choose(model, &own));
+  Status status = fem_compliance_choose(changed, &now);
+  if (!status) {
+    *has_changed = differs(model, &own, &now);
+    fem_compliance_destroy(&now);
+  }
+  fem_compliance_destroy(&own);
+  return status;
+}
+
+// Whether a contact stiffness that is chosen is another one with this value.
+static Status try_choice(const AppJobOptions *options, const FemModel *model, const char *key, double value,
+                         bool *has_changed) {
+  Other other = {.job = *options};
+  AppJob job;
+  TRY(add(&other, key, value));
+  TRY(app_job_open(&job, &other.job, NULL, NULL));
+  Status status = compare_choices(model, &job.model, has_changed);
+  app_job_close(&job);
+  return status;
+}
+
+// Whether derivatives keep a contact stiffness that a parameter may change.
+static bool keeps_choice(const FemParameter *parameter, const char *stiffness) {
+  bool follows = parameter->kind == FEM_PARAMETER_YOUNG || parameter->kind == FEM_PARAMETER_POISSON;
+  return strcmp(stiffness, "kept") == 0 || (strcmp(stiffness, "follows") == 0 && !follows);
+}
+
+// Parameters by which another run would differ in more than their derivatives do stay.
+static Status draw_direction(Direction *direction, const AppJobOptions *options, const FemModel *model,
+                             const AppGradientWords *words, const AppGradientAnswer *answer) {
+  *direction = (Direction){.step = model->scene->is_static ? OF_STATIC : OF_MOTION};
   Random random = random_seeded(SEED, 0);
   const char *stiffness = app_gradient_stiffness(model, words);
   for (int p = 0; p < words->by_count; p++) {
     const FemParameter *parameter = &answer->parameters[p];
-    double share = random_between(&random, -1, 1);
-    if (can_differ(parameter, stiffness) && !answer->gradient.kinks[p])
-      direction.ways[p] = share * fem_parameter_value(model, parameter);
+    double value = fem_parameter_value(model, parameter), way = random_between(&random, -1, 1) * value;
+    bool stays = way == 0 || parameter->kind == FEM_PARAMETER_REST || answer->gradient.kinks[p];
+    if (!stays && keeps_choice(parameter, stiffness))
+      TRY(try_choice(options, model, words->by[p], value + direction->step * way, &stays));
+    if (!stays) direction->ways[p] = way;
   }
-  return direction;
+  return STATUS_OK;
 }
 
 static bool leads_away(const Direction *direction, const AppGradientWords *words) {
@@ -123,8 +161,9 @@ static Status add_along(AppGradientCheck *check, Other *other, const Direction *
 Status app_gradient_check(AppGradientCheck *check, const AppJobOptions *job, const FemModel *model,
                           const AppGradientWords *words, const AppGradientAnswer *answer) {
   Other half = {.job = *job}, ahead = {.job = *job}, behind = {.job = *job};
-  const Direction direction = draw_direction(model, words, answer);
+  Direction direction;
   *check = (AppGradientCheck){0};
+  TRY(draw_direction(&direction, job, model, words, answer));
   TRY(halve(check, &half, model, words, answer));
   if (!leads_away(&direction, words)) {
     for (int g = 0; g < words->of_count; g++) check->along[g] = check->between[g] = NAN;

@@ -11,7 +11,8 @@ typedef struct AppGradientCheck {
   double halved[APP_GRADIENT_MOST][APP_GRADIENT_MOST]; // (goals, parameters)
   // By how much g changes along a random direction, each parameter by up to one of itself: by the
   // derivatives, and by a difference of whole runs, whose steps are chosen anew. Parameters that are 0 stay,
-  // rest positions, shapes where a contact stiffness is chosen, and E and ν where it is kept; NaN: all stay.
+  // rest positions (there is no --set of them), and what changes a contact stiffness that is chosen and kept;
+  // NaN: all stay.
   double along[APP_GRADIENT_MOST], between[APP_GRADIENT_MOST]; // (goals)
 } AppGradientCheck;
 

@@ -292,11 +292,13 @@ END_TEST
 
 // ---- How far to trust it.
 
-static void check_with(const char *name, const AppGradientWords *words, AppGradientCheck *check,
-                       AppGradientAnswer *answer) {
+// `settings` end with NULL.
+static void check_with(const char *name, const char *const *settings, const AppGradientWords *words,
+                       AppGradientCheck *check, AppGradientAnswer *answer) {
   char path[512];
   snprintf(path, sizeof path, "%s/tests/scenes/%s.yaml", TETLAP_SOURCE_DIR, name);
-  const AppJobOptions options = {.scene_path = path, .is_quiet = true};
+  AppJobOptions options = {.scene_path = path, .is_quiet = true};
+  for (; *settings; settings++) options.overrides[options.override_count++] = *settings;
   AppJob job;
   ck_assert_ok(app_job_open(&job, &options, NULL, NULL));
   ck_assert_ok(app_gradient_answer(answer, &job.model, words, NULL));
@@ -309,20 +311,40 @@ START_TEST(a_check_runs_along_a_direction_and_with_half_the_steps) {
                                   .by = {"bodies.lower.material.young", "contact.stiffness"},
                                   .of_count = 1,
                                   .by_count = 2};
+  const char *const none[] = {NULL};
   const AppGradientWords rub = {.of = {"displacement:lower:x"}, .by = {"contact.friction"}, 1, 1};
   AppGradientAnswer answer;
   AppGradientCheck check;
-  check_with("gradient_blocks", &words, &check, &answer);
+  check_with("gradient_blocks", none, &words, &check, &answer);
   double value = fabs(answer.gradient.values[0]);
   ck_assert_double_gt(fabs(check.along[0]), 1e-2 * value);
   ck_assert_near(check.along[0], check.between[0], 1e-6 * value);
   for (int p = 0; p < 2; p++) ck_assert_double_le(check.halved[0][p], 1e-9); // an equilibrium has no steps
   app_gradient_answer_destroy(&answer);
-  check_with("gradient_rub", &rub, &check, &answer);
+  check_with("gradient_rub", none, &rub, &check, &answer);
   ck_assert_near(check.along[0], check.between[0], 1e-6 * fabs(answer.gradient.values[0]));
   ck_assert_double_gt(check.halved[0][0], 1e-4); // friction goes another way
   ck_assert_double_lt(check.halved[0][0], 0.1);
   app_gradient_answer_destroy(&answer);
+}
+END_TEST
+
+// A hard impact has a part in the choice, a gentle one has none. The place has one in a longer fall.
+START_TEST(a_check_keeps_what_changes_a_contact_stiffness_that_is_chosen) {
+  static const char *const by[] = {"bodies.upper.place.translate[2]", "bodies.upper.velocity[2]",
+                                   "bodies.upper.material.density"};
+  const char *speeds[] = {"bodies.upper.velocity=[0.1, 0, -0.4]", "bodies.upper.velocity=[0.1, 0, -6]"};
+  for (int hard = 0; hard < 2; hard++)
+    for (int p = 0; p < 3; p++) {
+      const AppGradientWords words = {.of = {"displacement:upper:z"}, .by = {by[p]}, 1, 1};
+      const char *const settings[] = {"time.end=0.001", "contact={}", speeds[hard], NULL};
+      AppGradientAnswer answer;
+      AppGradientCheck check;
+      check_with("gradient_motion", settings, &words, &check, &answer);
+      ck_assert_msg(isnan(check.between[0]) == (hard && p > 0), "%s, %s: %g", speeds[hard], by[p],
+                    check.between[0]);
+      app_gradient_answer_destroy(&answer);
+    }
 }
 END_TEST
 
@@ -367,6 +389,7 @@ int main(void) {
   tcase_add_test(test_case, goals_at_earlier_times_agree_with_differences_of_runs);
   tcase_add_test(test_case, a_run_with_goals_ends_at_the_last_of_them);
   tcase_add_test(test_case, a_check_runs_along_a_direction_and_with_half_the_steps);
+  tcase_add_test(test_case, a_check_keeps_what_changes_a_contact_stiffness_that_is_chosen);
   tcase_add_test(test_case, the_command_prints_scaling_laws);
   return suite_run("gradient", test_case, 300);
 }
