@@ -17,8 +17,8 @@ typedef struct FemReasonPlace {
   const char *retry; // what asked last for a smaller step; empty: nothing did
 } FemReasonPlace;
 
-// STATUS_SOLVER, with a message that names vertex, body, position, velocity if that is worst, of its elements the one that is squeezed
-// most, and elements that are inside out with what their law bears.
+// STATUS_SOLVER, with a message that names vertex, body, position, velocity if that is worst, of its elements
+// the one that is squeezed most, and elements that are inside out with what their law bears.
 Status fem_reason_fail(const FemReason *reason, const FemSystem *system, const FemReasonPlace *place);
 
 #endif

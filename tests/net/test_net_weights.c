@@ -190,7 +190,7 @@ START_TEST(what_is_no_safetensors_file_is_refused) {
   static const char *const texts[] = {"", "short", "a text file that is longer than eight bytes",
                                       "PK\3\4 as torch.save writes it", "\x80\2 as it once did"};
   static const char *const words[] = {"0 bytes", "5 bytes", "is not a safetensors file",
-                                      "safetensors.torch.save_file", "safetensors.torch.save_file"};
+                                      "is a file of PyTorch", "tetlap.write_weights"};
   for (int k = 0; k < 5; k++) {
     NetModel_f64 model;
     NetCard card;

@@ -16,7 +16,8 @@ static void fail_at(double mirror, const char *law) {
   ck_assert_ok(fem_system_create_state(&system, &state));
   for (int v = 0; v < run.model.vertex_count; v++) state.positions[3 * v + 2] *= mirror;
   FemReason reason = {"the step had no end", "a shorter one"};
-  FemReasonPlace place = {.time = 1, .step = 1e-3, .positions = state.positions, .retry = ""};
+  FemReasonPlace place = {
+      .time = 1, .step = 1e-3, .positions = state.positions, .velocities = state.velocities, .retry = ""};
   ck_assert_int_eq(fem_reason_fail(&reason, &system, &place), STATUS_SOLVER);
   fem_state_destroy(&state);
   fem_system_destroy(&system);
