@@ -321,15 +321,19 @@ class WhatIsWrong(unittest.TestCase):
         history.write_text(history.read_text() + "0.12,3")
         self.assertEqual(len(tetlap.read(self.directory).history), 6)
 
+    def wait_for_threads(self):
+        for thread in threading.enumerate():
+            if thread is not threading.current_thread():
+                thread.join(60)  # a function that hangs does so for 30 s
+
     def test_a_function_leaves_no_file_open_where_there_is_no_program(self):
+        self.wait_for_threads()  # of earlier tests, with their files
         before = len(os.listdir("/proc/self/fd")), threading.active_count()
         with unittest.mock.patch.dict(os.environ, TETLAP_PROGRAM=str(self.directory / "none")):
             for _ in range(5):
                 with self.assertRaisesRegex(tetlap.Error, "which is no file"):
                     tetlap.run(DROP, self.directory, overlap=print)
-        for thread in threading.enumerate():
-            if thread is not threading.current_thread():
-                thread.join(5)
+        self.wait_for_threads()
         self.assertEqual((len(os.listdir("/proc/self/fd")), threading.active_count()), before)
 
     def test_a_program_that_is_not_there_is_named(self):
