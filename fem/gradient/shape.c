@@ -278,7 +278,7 @@ static double rounding_of(const ContactEvaluation *evaluation, int interface, do
   double slope = 0;
   for (int k = 0; k < evaluation->pair_count; k++) {
     const ContactFieldPair *field = &evaluation->fields[k];
-    if (evaluation->pairs[k].interface == interface)
+    if (evaluation->pairs[k].interface == interface && field->volume > 0)
       slope += vec3_length(vec3_at(field->force)) * contact_field_area(field) / field->volume;
   }
   return 2 * 4 * DBL_EPSILON * largest_coordinate * slope;

@@ -168,26 +168,23 @@ static Status measure(FemMomentum *momentum, const FemState *state, const FemMom
   return STATUS_OK;
 }
 
-static void copy(const FemMomentum *momentum, const FemMomentumBody *from, FemMomentumBody *to) {
-  memcpy(to, from, (size_t)momentum->body_count * sizeof *to);
-}
-
-static void copy_groups(const FemMomentum *momentum, const int *from, int *to) {
-  memcpy(to, from, (size_t)momentum->body_count * sizeof *to);
+// The next step begins where the last one ended.
+static void begin_next(FemMomentum *momentum) {
+  const size_t bodies = (size_t)momentum->body_count;
+  memcpy(momentum->next, momentum->now, bodies * sizeof *momentum->now);
+  memcpy(momentum->next_groups, momentum->groups, bodies * sizeof *momentum->groups);
 }
 
 Status fem_momentum_begin(FemMomentum *momentum, const FemState *state, const FemMomentumContact *contact) {
   TRY(measure(momentum, state, contact, momentum->now, momentum->groups));
-  copy(momentum, momentum->now, momentum->next);
-  copy_groups(momentum, momentum->groups, momentum->next_groups);
+  begin_next(momentum);
   momentum->time = momentum->next_time = state->time;
   return STATUS_OK;
 }
 
 Status fem_momentum_end(FemMomentum *momentum, const FemState *state, const FemMomentumContact *contact) {
   double half = 0.5 * (state->time - momentum->time);
-  copy(momentum, momentum->now, momentum->next);
-  copy_groups(momentum, momentum->groups, momentum->next_groups);
+  begin_next(momentum);
   TRY(measure(momentum, state, contact, momentum->next, momentum->next_groups));
   momentum->next_time = state->time;
   for (int b = 0; b < momentum->body_count; b++) {
@@ -203,8 +200,9 @@ Status fem_momentum_end(FemMomentum *momentum, const FemState *state, const FemM
 }
 
 void fem_momentum_accept(FemMomentum *momentum) {
-  copy(momentum, momentum->next, momentum->now);
-  copy_groups(momentum, momentum->next_groups, momentum->groups);
+  const size_t bodies = (size_t)momentum->body_count;
+  memcpy(momentum->now, momentum->next, bodies * sizeof *momentum->now);
+  memcpy(momentum->groups, momentum->next_groups, bodies * sizeof *momentum->groups);
   momentum->time = momentum->next_time;
 }
 
@@ -369,6 +367,5 @@ void fem_momentum_load(FemMomentum *momentum, const double *values) {
     momentum->now[b].size = values[6];
     momentum->groups[b] = (int)values[7];
   }
-  copy(momentum, momentum->now, momentum->next);
-  copy_groups(momentum, momentum->groups, momentum->next_groups);
+  begin_next(momentum);
 }

@@ -23,9 +23,8 @@ typedef struct FemRecorder {
   int frame_count;  // of which there is something
   FemHistoryRows writes_history;
   FemHistory history;
-  double *row; // one line of the history
-  int told;    // how many interfaces have columns: all, or none of too many
-  int row_capacity;
+  double *row;      // one line of the history
+  int told;         // how many interfaces have columns: all, or none of too many
   FemForces forces; // of the state that was measured last
   FemLedger ledger;
   FemProbes probes;

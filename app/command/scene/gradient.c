@@ -190,10 +190,10 @@ static Status print_plain(const Answer *answer) {
     AppTablePart part = part_of(answer, rows);
     if (words->by_count > 0)
       TRY(app_table_print(&(AppTable){&part, 1, words->by_count}, APP_TABLE_PLAIN, stdout));
-    for (int p = 0; p < words->by_count; p++)
-      if (answer->found.gradient.kinks[p]) printf("%s: %s\n", words->by[p], answer->found.gradient.kinks[p]);
     if (answer->found.gradient.weights) print_weights(answer, g);
   }
+  for (int p = 0; p < words->by_count; p++)
+    if (answer->found.gradient.kinks[p]) printf("%s: %s\n", words->by[p], answer->found.gradient.kinks[p]);
   return STATUS_OK;
 }
 
