@@ -32,6 +32,7 @@ typedef struct Toy {
   int evaluations, retries;
   // The system around it.
   FemSceneDef scene;
+  FemBodyDef body_def;
   FemModelBody body;
   FemModel model;
   FemSystem system;
@@ -132,7 +133,8 @@ static inline void add_effect(Toy *toy, const FemEffectOps *ops) {
 static inline void toy_open(Toy *toy) {
   static const char name[] = "chain";
   toy->body = (FemModelBody){.name = name, .vertex_end = toy->count};
-  toy->scene = (FemSceneDef){.solver_tolerance = 1e-12, .threads = 1};
+  toy->scene =
+      (FemSceneDef){.solver_tolerance = 1e-12, .threads = 1, .bodies = &toy->body_def, .body_count = 1};
   for (int i = 0; i < toy->count; i++) {
     toy->rest[3 * i] = toy->count > 1 ? i : 0;
     toy->masses[i] = toy->mass;
