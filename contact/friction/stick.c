@@ -52,18 +52,18 @@ Status contact_stick_create(ContactStick *stick, int vertex_count, const double 
 }
 
 void contact_stick_destroy(ContactStick *stick) {
-  void *arrays[] = {stick->laws,   stick->pairs,  stick->nodes,          stick->touches, stick->order,
-                    stick->pulls,  stick->forces, stick->place,          stick->clique,  stick->outer,
-                    stick->shares, stick->areas,  stick->node_of_vertex, stick->has_left};
+  void *arrays[] = {stick->laws,   stick->pairs,  stick->nodes,          stick->touches,  stick->order,
+                    stick->pulls,  stick->forces, stick->place,          stick->clique,   stick->outer,
+                    stick->shares, stick->areas,  stick->node_of_vertex, stick->has_left, stick->motions};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
   *stick = (ContactStick){0};
 }
 
 size_t contact_stick_bytes(const ContactStick *stick) {
-  const void *const arrays[] = {stick->laws,           stick->pairs,   stick->nodes,  stick->touches,
-                                stick->order,          stick->pulls,   stick->forces, stick->place,
-                                stick->clique,         stick->outer,   stick->shares, stick->areas,
-                                stick->node_of_vertex, stick->has_left};
+  const void *const arrays[] = {stick->laws,           stick->pairs,    stick->nodes,  stick->touches,
+                                stick->order,          stick->pulls,    stick->forces, stick->place,
+                                stick->clique,         stick->outer,    stick->shares, stick->areas,
+                                stick->node_of_vertex, stick->has_left, stick->motions};
   return memory_held_by(sizeof arrays / sizeof *arrays, arrays);
 }
 
@@ -72,6 +72,7 @@ Status contact_stick_reserve(ContactStick *stick, int pair_count) {
   bool fits = memory_reserve((void **)&stick->pairs, &stick->pair_capacity, n, sizeof *stick->pairs) &&
               memory_reserve((void **)&stick->touches, &stick->touch_capacity, n, sizeof *stick->touches) &&
               memory_reserve((void **)&stick->pulls, &stick->pull_capacity, n, sizeof *stick->pulls) &&
+              memory_reserve((void **)&stick->motions, &stick->motion_capacity, n, sizeof *stick->motions) &&
               memory_reserve((void **)&stick->order, &stick->order_capacity, 8 * n, sizeof *stick->order) &&
               memory_reserve((void **)&stick->nodes, &stick->node_capacity, 8 * n, sizeof *stick->nodes);
   return fits ? STATUS_OK : status_no_memory("friction");
@@ -106,31 +107,16 @@ static int node_at(ContactStick *stick, int interface, int vertex) {
   return *node = stick->node_count++;
 }
 
-// Adds a pair to the nodes of its slave on that side, whose F is given.
-static void gather_side(ContactStick *stick, const ContactStickLast *last, int k, int side,
-                        const double F[9]) {
+// The touches of a slave in a pair, each with w = λ |F_ij|.
+static void meet(ContactStick *stick, int k, int side, double pressed) {
   const ContactStickPair *pair = &stick->pairs[k];
-  const ContactStickLaw *law = &stick->laws[pair->interface];
-  double sign = side == 0 ? 1 : -1, half = law->weight[side];
-  Vec3 force = vec3_scale(sign, vec3_at(pair->force));
-  Vec3 gap = vec3_sub(place_before(stick, last, pair, 1 - side), place_before(stick, last, pair, side));
-  double pressed = vec3_length(force);
   for (int v = 0; v < 4; v++) {
-    double lambda = fmax(pair->lambda[side][v], 0), w = lambda * pressed;
-    ContactStickTouch *touch = &stick->touches[k][side][v];
-    *touch = (ContactStickTouch){.node = -1};
+    double w = fmax(pair->lambda[side][v], 0) * pressed;
     if (!(w > 0)) continue;
-    *touch = (ContactStickTouch){.node = node_at(stick, pair->interface, stick->tets[pair->tets[side]][v]),
-                                 .share = w};
-    ContactStickNode *node = &stick->nodes[touch->node];
-    node->end++;
-    node->weight += w;
-    node->stiffness += half * law->stiffness * lambda * pair->area;
-    node->limit = half * law->friction; // times N once it is known
-    node->excess = half * fmax(law->at_rest - law->friction, 0);
-    vec3_accumulate(node->force, vec3_scale(lambda, force));
-    vec3_accumulate(node->gap, vec3_scale(w, gap));
-    for (int r = 0; r < 9; r++) node->deformation[r] += w * F[r];
+    ContactStickTouch *touch = &stick->touches[k][side][v];
+    touch->node = node_at(stick, pair->interface, stick->tets[pair->tets[side]][v]);
+    touch->share = w;
+    stick->nodes[touch->node].end++;
   }
 }
 
@@ -139,29 +125,25 @@ static void forget_vertices(ContactStick *stick, int node_begin) {
   for (int n = node_begin; n < stick->node_count; n++) stick->node_of_vertex[stick->nodes[n].vertex] = -1;
 }
 
-// Pairs of one tetrahedron stand together: its F is found once.
-static void gather(ContactStick *stick, const ContactStickLast *last, const double *positions) {
-  int first = 0, former[2] = {-1, -1};
-  double F[2][9];
+// Makes the nodes, with the numbers of their touches in `end`.
+static void find_nodes(ContactStick *stick) {
+  int first = 0;
   stick->node_count = 0;
   for (int k = 0; k < stick->pair_count; k++) {
     if (k > 0 && stick->pairs[k].interface != stick->pairs[k - 1].interface) {
       forget_vertices(stick, first);
       first = stick->node_count;
     }
+    double pressed = vec3_length(vec3_at(stick->pairs[k].force));
     for (int side = 0; side < 2; side++) {
       for (int v = 0; v < 4; v++) stick->touches[k][side][v] = (ContactStickTouch){.node = -1};
-      if (!is_slave(stick, &stick->pairs[k], side)) continue;
-      int tet = stick->pairs[k].tets[side];
-      if (tet != former[side]) contact_deformation_find(stick->tets[tet], stick->rest, positions, F[side]);
-      former[side] = tet;
-      gather_side(stick, last, k, side, F[side]);
+      if (is_slave(stick, &stick->pairs[k], side)) meet(stick, k, side, pressed);
     }
   }
   forget_vertices(stick, first);
 }
 
-// Lists the touches node by node, their shares from w to w/W.
+// Lists the touches node by node, in the order of the pairs.
 static void order_touches(ContactStick *stick) {
   int begin = 0;
   for (int n = 0; n < stick->node_count; n++) {
@@ -169,13 +151,54 @@ static void order_touches(ContactStick *stick) {
     stick->nodes[n].begin = stick->nodes[n].end = begin;
     begin += count;
   }
-  ContactStickTouch *touches = stick->pair_count ? &stick->touches[0][0][0] : NULL;
-  for (int t = 0; t < 8 * stick->pair_count; t++) {
-    if (touches[t].node < 0) continue;
-    ContactStickNode *node = &stick->nodes[touches[t].node];
-    touches[t].share /= node->weight;
-    stick->order[node->end++] = t;
+  const ContactStickTouch *touches = stick->pair_count ? &stick->touches[0][0][0] : NULL;
+  for (int t = 0; t < 8 * stick->pair_count; t++)
+    if (touches[t].node >= 0) stick->order[stick->nodes[touches[t].node].end++] = t;
+}
+
+// How the slaves of all pairs have moved. Pairs of one tetrahedron stand together: its F is found once.
+static void find_motions(ContactStick *stick, const ContactStickLast *last, const double *positions) {
+#pragma omp parallel if (stick->pair_count > CONTACT_STICK_MANY)
+  {
+    const ContactStickMotion *former[2] = {NULL, NULL};
+    int tets[2] = {-1, -1};
+#pragma omp for schedule(static)
+    for (int k = 0; k < stick->pair_count; k++)
+      for (int side = 0; side < 2; side++) {
+        const ContactStickPair *pair = &stick->pairs[k];
+        ContactStickMotion *motion = &stick->motions[k][side];
+        if (!is_slave(stick, pair, side)) continue;
+        vec3_store(motion->gap, vec3_sub(place_before(stick, last, pair, 1 - side),
+                                         place_before(stick, last, pair, side)));
+        if (pair->tets[side] == tets[side])
+          memcpy(motion->deformation, former[side]->deformation, sizeof motion->deformation);
+        else
+          contact_deformation_find(stick->tets[pair->tets[side]], stick->rest, positions,
+                                   motion->deformation);
+        tets[side] = pair->tets[side];
+        former[side] = motion;
+      }
   }
+}
+
+// The node's sums over its touches, whose shares go from w to w/W.
+static void gather(ContactStick *stick, ContactStickNode *node) {
+  const ContactStickLaw *law = &stick->laws[node->interface];
+  ContactStickTouch *touches = &stick->touches[0][0][0];
+  for (int r = node->begin; r < node->end; r++) {
+    int t = stick->order[r], side = t / 4 % 2;
+    const ContactStickPair *pair = &stick->pairs[t / 8];
+    const ContactStickMotion *motion = &stick->motions[t / 8][side];
+    double half = law->weight[side], w = touches[t].share, lambda = pair->lambda[side][t % 4];
+    node->weight += w;
+    node->stiffness += half * law->stiffness * lambda * pair->area;
+    node->limit = half * law->friction; // times N once it is known
+    node->excess = half * fmax(law->at_rest - law->friction, 0);
+    vec3_accumulate(node->force, vec3_scale(side == 0 ? lambda : -lambda, vec3_at(pair->force)));
+    vec3_accumulate(node->gap, vec3_scale(w, vec3_at(motion->gap)));
+    for (int i = 0; i < 9; i++) node->deformation[i] += w * motion->deformation[i];
+  }
+  for (int r = node->begin; r < node->end; r++) touches[stick->order[r]].share /= node->weight;
 }
 
 // ---- The law.
@@ -227,9 +250,8 @@ static double work_of_cut(const ContactStickNode *node, const ContactStickEntry 
   return press * (0.5 * (held + node->limit) * over + least * (cut - over));
 }
 
-// From the history to the force of a node; returns what it dissipates since then.
-static double return_radially(ContactStick *stick, const ContactStickHistory *history,
-                              ContactStickNode *node) {
+// From the history to the force of a node, and to what it dissipates since then.
+static void return_radially(ContactStick *stick, const ContactStickHistory *history, ContactStickNode *node) {
   const ContactStickEntry *entry = contact_stick_history_find(history, node->interface, node->vertex);
   Vec3 kept = entry ? vec3_at(entry->stretch) : (Vec3){0, 0, 0};
   double before = entry ? entry->energy : 0, limit = entry ? entry->limit : 0,
@@ -257,10 +279,10 @@ static double return_radially(ContactStick *stick, const ContactStickHistory *hi
   double cut = node->slips ? 0.5 * (onset + node->limit) * (1 - kept_share) * length : 0;
   if (node->slips && node->excess > 0)
     cut = work_of_cut(node, entry, least, onset, (1 - kept_share) * length);
-  double spent = before - 0.5 * k * vec3_dot(carried, carried) + cut;
-  remember_slip(entry, vec3_scale(1 - kept_share, trial), spent, node);
+  node->kept = before;
+  node->spent = before - 0.5 * k * vec3_dot(carried, carried) + cut;
+  remember_slip(entry, vec3_scale(1 - kept_share, trial), node->spent, node);
   if (entry) stick->has_left[entry - history->entries] = false;
-  return spent;
 }
 
 static bool rests(const ContactStickEntry *entry, const bool *is_resting) {
@@ -273,11 +295,7 @@ static double energy_of_left(const ContactStick *stick, const ContactStickHistor
   double left = 0;
   for (int i = 0; i < history->entry_count; i++)
     if (!rests(&history->entries[i], is_resting)) left += history->entries[i].energy;
-  for (int n = 0; n < stick->node_count; n++) {
-    const ContactStickEntry *entry =
-        contact_stick_history_find(history, stick->nodes[n].interface, stick->nodes[n].vertex);
-    if (entry) left -= entry->energy;
-  }
+  for (int n = 0; n < stick->node_count; n++) left -= stick->nodes[n].kept;
   return left;
 }
 
@@ -292,6 +310,7 @@ static double energy_at_rest(const ContactStickHistory *history, const bool *is_
 static void share_forces(ContactStick *stick, const ContactStickHistory *history, const bool *is_resting) {
   for (int i = 0; i < stick->interface_count; i++)
     vec3_store(stick->forces[i], is_resting && is_resting[i] ? vec3_at(history->forces[i]) : (Vec3){0, 0, 0});
+#pragma omp parallel for schedule(static) if (stick->pair_count > CONTACT_STICK_MANY)
   for (int k = 0; k < stick->pair_count; k++) {
     Vec3 pull = {0, 0, 0};
     for (int side = 0; side < 2; side++)
@@ -302,8 +321,9 @@ static void share_forces(ContactStick *stick, const ContactStickHistory *history
         pull = vec3_add(pull, vec3_scale(share, vec3_at(stick->nodes[touch->node].force)));
       }
     vec3_store(stick->pulls[k], pull);
-    vec3_accumulate(stick->forces[stick->pairs[k].interface], pull);
   }
+  for (int k = 0; k < stick->pair_count; k++)
+    vec3_accumulate(stick->forces[stick->pairs[k].interface], vec3_at(stick->pulls[k]));
 }
 
 // Where the press grows a little, what slides sticks for a step at nearly all of its limit: that counts as
@@ -337,15 +357,21 @@ Status contact_stick_eval(ContactStick *stick, const ContactStickLast *last, int
   const ContactStickHistory *history = &last->history;
   stick->pair_count = pair_count;
   TRY(contact_stick_reserve(stick, pair_count));
-  gather(stick, last, positions);
-  order_touches(stick);
   TRY(expect_left(stick, history));
+  find_nodes(stick);
+  order_touches(stick);
+  find_motions(stick, last, positions);
+#pragma omp parallel for schedule(static) if (stick->pair_count > CONTACT_STICK_MANY)
+  for (int n = 0; n < stick->node_count; n++) {
+    gather(stick, &stick->nodes[n]);
+    return_radially(stick, history, &stick->nodes[n]);
+  }
   stick->slip_count = 0;
   stick->spent = energy_of_left(stick, history, is_resting);
   stick->stored = energy_at_rest(history, is_resting);
   for (int n = 0; n < stick->node_count; n++) {
-    ContactStickNode *node = &stick->nodes[n];
-    stick->spent += return_radially(stick, history, node);
+    const ContactStickNode *node = &stick->nodes[n];
+    stick->spent += node->spent;
     stick->stored += 0.5 * node->stiffness * vec3_dot(vec3_at(node->stretch), vec3_at(node->stretch));
     stick->slip_count += node->slips;
   }

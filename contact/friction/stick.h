@@ -46,6 +46,9 @@
 #include "contact/stiffness.h"
 #include "contact/surface/stars.h"
 
+// Fewer pairs take less time than to wake other threads.
+enum { CONTACT_STICK_MANY = 2048 };
+
 // A pair of the normal law, as friction needs it; ordered by interface.
 typedef struct ContactStickPair {
   int interface;
@@ -83,6 +86,7 @@ typedef struct ContactStickNode {
   double slid[3];        // F_a G_a, since it was last touched [m]
   double way;            // Σ |s_trial − s| so far [m]
   double work;           // dissipated at it so far [J]
+  double kept, spent;    // stored at the last accepted state, dissipated since then [J]
   bool slips;
   bool advances; // the way since the last accepted state goes along s_trial
 } ContactStickNode;
@@ -92,6 +96,12 @@ typedef struct ContactStickTouch {
   int node;     // −1: nothing presses it
   double share; // w, then w/W
 } ContactStickTouch;
+
+// How a slave's tetrahedron has moved at a pair.
+typedef struct ContactStickMotion {
+  double gap[3];         // Δ since the last accepted state [m]
+  double deformation[9]; // F
+} ContactStickMotion;
 
 // The last accepted state.
 typedef struct ContactStickLast {
@@ -112,6 +122,7 @@ typedef struct ContactStick {
   int node_count;
   ContactStickTouch (*touches)[2][4]; //                            (pair_count)
   int *order;                         // numbers of touches (8 a pair), node by node
+  ContactStickMotion (*motions)[2];   // of sides that are slaves       (pair_count)
   double (*pulls)[3];                 // on side 0 of each pair [N]               (pair_count)
   double (*forces)[3];  // on side 0 of each interface [N]; of one at rest as it was   (interface_count)
   double (*areas)[2];   // that stick and that slide [m²]; likewise                    (interface_count)
@@ -123,7 +134,7 @@ typedef struct ContactStick {
   int *place;          // 0 between calls                           (vertex_count)
   int *clique;
   double *shares, *outer;
-  size_t pair_capacity, node_capacity, touch_capacity, order_capacity, pull_capacity;
+  size_t pair_capacity, node_capacity, touch_capacity, order_capacity, pull_capacity, motion_capacity;
   size_t clique_capacity, share_capacity, outer_capacity, left_capacity;
 } ContactStick;
 

@@ -91,6 +91,7 @@ Status contact_stick_pairs_eval(ContactStick *stick, const ContactSystem *system
   int count = evaluation->pair_count;
   TRY(contact_stick_reserve(stick, count));
   for (int i = 0; i < layout->interface_count; i++) is_resting[i] = contact_system_is_resting(system, i);
+#pragma omp parallel for schedule(static) if (count > CONTACT_STICK_MANY)
   for (int k = 0; k < count; k++) hand_over(layout, evaluation, k, last_time, &stick->pairs[k]);
   return contact_stick_eval(stick, last, count, evaluation->positions, is_resting);
 }
