@@ -87,6 +87,11 @@
 // Held by test_balance, test_scenes.
 #define FEM_BALANCE_OF_INERTIA (2 * FEM_MOMENTUM)
 
+// What is left has at most this share of the power Σ m v̇ v (of moduli) along a body's rotation. That is 2 K a
+// radian, K the kinetic energy, so with 1/4π a turn gives FEM_ENERGY of K. This is as much.
+// Held by test_balance.
+#define FEM_BALANCE_OF_TURN (2 * FEM_RESERVE * FEM_BALANCE)
+
 // ---- What a step may err by: the tolerances of IDA's error test, beside time.tolerance.
 
 // Share of time.tolerance that velocities may err by with contact, over the slowest wave's speed, and

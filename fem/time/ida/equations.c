@@ -64,7 +64,7 @@ static double unbalance(void *self, const double *balance) {
   const ContactEvaluation *contact;
   if (fem_effect_contact_evaluate(ida->system, ida->state, &contact)) return INFINITY;
   const FemSystem *system = ida->system;
-  return fem_balance_excess(&ida->balance, system->model, &ida->part, system->forces,
+  return fem_balance_excess(&ida->balance, system->model, &ida->part, ida->state, system->forces,
                             contact ? contact->given_forces : NULL, balance);
 }
 

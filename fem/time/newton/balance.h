@@ -5,22 +5,32 @@
 #ifndef TETLAP_FEM_TIME_NEWTON_BALANCE_H
 #define TETLAP_FEM_TIME_NEWTON_BALANCE_H
 
+#include "fem/effect/state.h"
 #include "fem/model/model.h"
 #include "fem/time/part.h"
 
-// Of each body: Σ |r|, and Σ m |v̇| [N]; both owned.
+// Sums over a body's unknowns: r the residual, v̄ the mean velocity, Ω × d the velocity of its rotation as a
+// whole, with Ω from its inertia and angular momentum. Numbers only, which ranks add up.
+typedef struct FemBalanceBody {
+  double unbalanced; // Σ |r| [N]
+  double needed;     // Σ m |v̇| [N]
+  double power;      // Σ r · (Ω × d): what the rest gives to the rotation [W]
+  double turnover;   // Σ m |v̇| |v − v̄| [W]
+} FemBalanceBody;
+
 typedef struct FemBalance {
-  double *unbalanced, *needed; // (body_count)
+  FemBalanceBody *bodies; // owned                                          (body_count)
 } FemBalance;
 
 // STATUS_MEMORY.
 Status fem_balance_create(FemBalance *balance, int body_count);
 void fem_balance_destroy(FemBalance *balance);
 
-// The largest Σ |r| of a body over what is allowed [1], infinite where a residual is no number. All at one
-// state: `forces` f (vertex_count, 3), those of contact among them `pressing` (vertex_count, 3; NULL: none),
-// and `residual` M v̇ − f of this rank's unknowns [N]. By all ranks.
+// The largest excess of a body: Σ |r|, or the power, over what is allowed [1]; infinite where a residual is
+// no number. All at one `state`: `forces` f (vertex_count, 3), those of contact among them `pressing`
+// (vertex_count, 3; NULL: none), and `residual` M v̇ − f of this rank's unknowns [N]. By all ranks.
 double fem_balance_excess(FemBalance *balance, const FemModel *model, const FemPart *part,
-                          const double *forces, const double *pressing, const double *residual);
+                          const FemState *state, const double *forces, const double *pressing,
+                          const double *residual);
 
 #endif
