@@ -41,17 +41,27 @@ Status fem_equilibrium_forces(FemEquilibrium *equilibrium, double time, const do
   return fem_equilibrium_forces_moving(equilibrium, time, u, NULL, force);
 }
 
-Status fem_equilibrium_factorise_moving(FemEquilibrium *equilibrium, double time, const double *u,
-                                        const double *v, double damping, double shift) {
+Status fem_equilibrium_assemble_moving(FemEquilibrium *equilibrium, double time, const double *u,
+                                       const double *v, double damping, double shift) {
   FemSystem *system = equilibrium->system;
   fem_system_scatter(system, time, u, v, equilibrium->state);
   TRY(fem_system_couple(system, equilibrium->state));
-  TRY(fem_system_assemble(system, equilibrium->state, 1, damping, shift, &system->matrix));
+  return fem_system_assemble(system, equilibrium->state, 1, damping, shift, &system->matrix);
+}
+
+Status fem_equilibrium_factorise_assembled(FemEquilibrium *equilibrium) {
+  FemSystem *system = equilibrium->system;
   if (equilibrium->layout != system->matrix.layout) {
     TRY(equilibrium->ops->analyse(equilibrium->solver, &system->matrix));
     equilibrium->layout = system->matrix.layout;
   }
   return equilibrium->ops->factorise(equilibrium->solver, &system->matrix, NULL, NULL, 0);
+}
+
+Status fem_equilibrium_factorise_moving(FemEquilibrium *equilibrium, double time, const double *u,
+                                        const double *v, double damping, double shift) {
+  TRY(fem_equilibrium_assemble_moving(equilibrium, time, u, v, damping, shift));
+  return fem_equilibrium_factorise_assembled(equilibrium);
 }
 
 Status fem_equilibrium_factorise(FemEquilibrium *equilibrium, double time, const double *u, double shift) {

@@ -31,6 +31,10 @@ Status fem_equilibrium_forces_moving(FemEquilibrium *equilibrium, double time, c
                                      const double *v, double *force);
 Status fem_equilibrium_factorise_moving(FemEquilibrium *equilibrium, double time, const double *u,
                                         const double *v, double damping, double shift);
+// Its two halves: the system's matrix, and the factor of that as it stands.
+Status fem_equilibrium_assemble_moving(FemEquilibrium *equilibrium, double time, const double *u,
+                                       const double *v, double damping, double shift);
+Status fem_equilibrium_factorise_assembled(FemEquilibrium *equilibrium);
 // Solves with the last factor; b and x must not overlap. RETRY as of FemSolverOps.solve.
 Status fem_equilibrium_solve(FemEquilibrium *equilibrium, const double *b, double *x);
 

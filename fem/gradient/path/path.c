@@ -170,6 +170,7 @@ static Status go_back_to(FemSweep *sweep, int k, FemGradient *gradient) {
   sweep->step = k;
   TRY(fem_replay_return(&sweep->replay, k));
   TRY(fem_tangent_find(&sweep->tangent, &sweep->replay.state));
+  fem_sweep_begin_step(sweep);
   return go_back_with(sweep, gradient);
 }
 

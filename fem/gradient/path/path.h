@@ -15,9 +15,9 @@
 //
 // J is the matrix, but not with friction, following pressures, damping, pressure laws and overlap models that
 // do not clip. Then J is not symmetric; its transpose is applied exactly, by GMRES with the factor of the
-// matrix (fem/gradient/tangent.h, friction.h, damping.h). How the steps themselves depend on p is left out,
-// as it is in every derivative of a run. A vertex that changes between sticking and slipping within a step
-// makes g one-sided there.
+// matrix, or its diagonal where mass dominates (fem/gradient/path/dominance.h). How the steps themselves
+// depend on p is left out, as it is in every derivative of a run. A vertex that changes between sticking and
+// slipping within a step makes g one-sided there.
 #ifndef TETLAP_FEM_GRADIENT_PATH_PATH_H
 #define TETLAP_FEM_GRADIENT_PATH_PATH_H
 

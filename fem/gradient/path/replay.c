@@ -82,7 +82,8 @@ Status fem_replay_end(const FemReplay *replay, int k, Status status) {
 static Status multiply(void *self, const double *x, double *y);
 
 static Status precondition(void *self, const double *x, double *y) {
-  return fem_equilibrium_solve(&((FemReplay *)self)->equilibrium, x, y);
+  FemReplay *replay = self;
+  return fem_inverse_solve(&replay->inverse, replay->c, INEXACT * INEXACT, x, y);
 }
 
 static Status create_slips(FemReplay *replay) {
@@ -127,13 +128,6 @@ static Status create_solver(FemReplay *replay, FemEquilibrium *equilibrium) {
   return STATUS_OK;
 }
 
-// A solver keeps its order of elimination, so one which goes on adds up otherwise than one which begins.
-static Status renew_solver(FemReplay *replay) {
-  fem_equilibrium_destroy(&replay->equilibrium);
-  replay->has_factor = false;
-  return create_solver(replay, &replay->equilibrium);
-}
-
 Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemReplaySteps *steps) {
   *replay = (FemReplay){.steps = steps};
   TRY(fem_system_create(&replay->system, model));
@@ -162,6 +156,7 @@ Status fem_replay_create(FemReplay *replay, const FemModel *model, const FemRepl
   TRY(create_slips(replay));
   TRY(create_yields(replay));
   TRY(create_krylov(replay));
+  TRY(fem_inverse_create(&replay->inverse, &replay->system, &replay->state));
   TRY(create_solver(replay, &replay->adjoint));
   return fem_mixing_create(&replay->mixing, replay->n);
 }
@@ -171,7 +166,7 @@ void fem_replay_destroy(FemReplay *replay) {
     fem_effect_history_destroy(&replay->histories[i]);
   fem_krylov_destroy(&replay->krylov);
   fem_mixing_destroy(&replay->mixing);
-  fem_equilibrium_destroy(&replay->equilibrium);
+  fem_inverse_destroy(&replay->inverse);
   fem_equilibrium_destroy(&replay->adjoint);
   for (int i = 0; i < FEM_MAX_EFFECTS; i++) replay->before.histories[i] = (FemEffectHistory){0}; // borrowed
   fem_state_destroy(&replay->before);
@@ -188,10 +183,10 @@ void fem_replay_destroy(FemReplay *replay) {
 
 // Forces at u, where lists follow if the way was long.
 static Status find_forces(FemReplay *replay, double time, const double *u, const double *v, double *force) {
-  Status status = fem_equilibrium_forces_moving(&replay->equilibrium, time, u, v, force);
+  Status status = fem_equilibrium_forces_moving(&replay->inverse.equilibrium, time, u, v, force);
   if (status != STATUS_RETRY) return status;
-  TRY(fem_equilibrium_renew(&replay->equilibrium, time, u));
-  return fem_equilibrium_forces_moving(&replay->equilibrium, time, u, v, force);
+  TRY(fem_equilibrium_renew(&replay->inverse.equilibrium, time, u));
+  return fem_equilibrium_forces_moving(&replay->inverse.equilibrium, time, u, v, force);
 }
 
 // f − M v̇ at u of step k into `force`; the largest value.
@@ -241,7 +236,7 @@ static Status multiply(void *self, const double *x, double *y) {
 // Of a step d = P⁻¹ r by a factor P of another c, the share after which least is left: with
 // J d = r + (c² − c_P²) M d it is r·J d / |J d|².
 static double find_share(const FemReplay *replay, double c) {
-  double top = 0, bottom = 0, more = c * c - replay->factor_c * replay->factor_c;
+  double top = 0, bottom = 0, more = c * c - replay->inverse.c * replay->inverse.c;
   for (int i = 0; i < replay->n; i++) {
     double along = replay->force[i] + more * fem_replay_mass(replay, i) * replay->step[i];
     top += replay->force[i] * along;
@@ -261,13 +256,11 @@ typedef struct FemReplayWay {
 static Status find_step(FemReplay *replay, double time, const double *u, const double *v, double c,
                         FemReplayWay way) {
   if (way.is_fresh) {
-    TRY(fem_equilibrium_factorise_moving(&replay->equilibrium, time, u, v, c, c * c));
+    TRY(fem_inverse_make(&replay->inverse, time, u, v, c));
     fem_mixing_forget(&replay->mixing);
-    replay->has_factor = true;
-    replay->factor_c = c;
   }
   if (!way.is_corrected) {
-    TRY(fem_equilibrium_solve(&replay->equilibrium, replay->force, replay->step));
+    TRY(fem_inverse_solve(&replay->inverse, c, INEXACT, replay->force, replay->step));
     if (!replay->mixing.has_last) replay->share = find_share(replay, c);
     for (int i = 0; i < replay->n; i++) replay->step[i] *= replay->share;
     if (!way.is_mixed) return STATUS_OK;
@@ -378,9 +371,11 @@ static void guess(FemReplay *replay, int k) {
 
 // A step of a motion is short, so that an earlier factor serves; where it does not, nothing is spared.
 static Status find(FemReplay *replay, int k) {
+  double c = fem_replay_formula(replay, k).c;
   if (!replay->system.model->scene->is_static) {
     guess(replay, k);
-    Status status = balance(replay, k, (FemReplayWay){.is_fresh = !replay->has_factor, .is_mixed = true});
+    Status status = balance(
+        replay, k, (FemReplayWay){.is_fresh = !fem_inverse_serves(&replay->inverse, c), .is_mixed = true});
     if (status != STATUS_SOLVER && status != STATUS_RETRY) return status;
   }
   guess(replay, k);
@@ -431,7 +426,7 @@ static Status begin_anew(FemReplay *replay, int k) {
     if (history->count > 0) TRY(fem_system_remember(system, e, history->values, history->count));
   }
   replay->state.last = &system->accepted;
-  return renew_solver(replay);
+  return fem_inverse_forget(&replay->inverse);
 }
 
 // ---- Segments.
@@ -497,7 +492,7 @@ Status fem_replay_return(FemReplay *replay, int k) {
   if (is_anew(replay, k)) TRY(begin_anew(replay, k));
   recall(replay, k > 0 ? k - 1 : 0, &replay->before);
   replay->state.last = &replay->before;
-  TRY(fem_equilibrium_renew(&replay->equilibrium, time, u_of(replay, k)));
+  TRY(fem_equilibrium_renew(&replay->inverse.equilibrium, time, u_of(replay, k)));
   fem_system_scatter(&replay->system, time, u_of(replay, k), v_of(replay, k), &replay->state);
   return STATUS_OK;
 }

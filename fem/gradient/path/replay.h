@@ -5,16 +5,17 @@
 //   v_n = c u_n + a₁ u_{n−1} + a₂ u_{n−2},   M (c v_n + a₁ v_{n−1} + a₂ v_{n−2}) = f(u_n, t_n; history),
 //
 // a static scene from equilibrium to equilibrium (c = a₁ = a₂ = 0). The replay differs from the run by the
-// error of its steps. In a motion a factor of the matrix serves many steps, also of other lengths; Newton's
-// steps by it are scaled and mixed (fem/time/newton/mixing.h). The matrices of friction, of damping and of
-// following pressures are not exact. With these, systems are solved by GMRES on differences of forces, always
-// in a static scene, and in a motion where a new factor gets on no better.
+// error of its steps. In a motion one matrix serves many steps, also of other lengths
+// (fem/gradient/path/inverse.h); Newton's steps by it are scaled and mixed (fem/time/newton/mixing.h). The
+// matrices of friction, of damping and of following pressures are not exact. With these, systems are solved
+// by GMRES on differences of forces, always in a static scene, and in a motion where a new matrix gets on no
+// better.
 #ifndef TETLAP_FEM_GRADIENT_PATH_REPLAY_H
 #define TETLAP_FEM_GRADIENT_PATH_REPLAY_H
 
+#include "fem/gradient/path/inverse.h"
 #include "fem/gradient/path/replay_steps.h"
 #include "fem/sparse/krylov.h"
-#include "fem/statics/equilibrium.h"
 #include "fem/time/newton/mixing.h"
 
 // ẏ_n = c y_n + near y_{n−1} + far y_{n−2}
@@ -26,13 +27,11 @@ typedef struct FemReplay {
   const FemReplaySteps *steps; // borrowed
   FemSystem system;
   FemState before, state; // of the step before, and the one under trial
-  FemEquilibrium equilibrium;
+  FemInverse inverse;     // serves the next step, too
   FemEquilibrium adjoint; // of the way back; its factor serves on where the replay begins anew
   FemKrylov krylov;       // where the matrix is not near J
   FemMixing mixing;
   double *weights; // of its norm, 1                            (n)
-  bool has_factor; // which serves the next step, too
-  double factor_c; // c of the step that it is of
   double share;    // that is taken of its steps
   void *stick;     // friction's effect, borrowed; NULL: none
   void *plastic;   // that of plasticity, borrowed; NULL: none

@@ -5,11 +5,13 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "fem/gradient/path/dominance.h"
 #include "fem/sparse/vector.h"
 
 // Of a step's right side, the share that may be left; of that, what GMRES' own estimate may be. What is left
-// beyond it is solved for again.
-static const double RESIDUAL = 1e-12, AIM = 0.5;
+// beyond it is solved for again. Where mass dominates a hundredth takes two or three products more, which are
+// cheap.
+static const double RESIDUAL = 1e-12, AIM = 0.5, LIGHT_AIM = 0.01;
 // A factor of a later step serves on until GMRES takes more directions: a new one costs more than as many.
 enum { MOST_DIRECTIONS = 8, MAX_ROUNDS = 3 };
 
@@ -46,8 +48,8 @@ void fem_sweep_destroy(FemSweep *sweep) {
   fem_tangent_destroy(&sweep->tangent);
   fem_varied_destroy(&sweep->varied);
   fem_replay_destroy(&sweep->replay);
-  void *arrays[] = {sweep->goals, sweep->lambda,     sweep->weight, sweep->slope,
-                    sweep->right, sweep->correction, sweep->factors};
+  void *arrays[] = {sweep->goals, sweep->lambda,     sweep->weight,  sweep->slope,
+                    sweep->right, sweep->correction, sweep->factors, sweep->diagonal};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i]);
 }
 
@@ -68,7 +70,10 @@ static Status create_goal(const FemSweep *sweep, FemSweepGoal *goal) {
 static Status multiply(void *self, const double *x, double *y);
 
 static Status precondition(void *self, const double *x, double *y) {
-  return fem_equilibrium_solve(&((FemSweep *)self)->replay.adjoint, x, y);
+  FemSweep *sweep = self;
+  if (!sweep->is_light) return fem_equilibrium_solve(&sweep->replay.adjoint, x, y);
+  for (int i = 0; i < sweep->replay.n; i++) y[i] = x[i] / sweep->diagonal[i];
+  return STATUS_OK;
 }
 
 Status fem_sweep_create(FemSweep *sweep, const FemModel *model, const FemGradientDef *def,
@@ -87,9 +92,10 @@ Status fem_sweep_create(FemSweep *sweep, const FemModel *model, const FemGradien
   sweep->slope = memory_zeroed(goals * values, sizeof(double));
   sweep->right = memory_zeroed(n, sizeof(double));
   sweep->correction = memory_zeroed(n, sizeof(double));
+  sweep->diagonal = memory_zeroed(n, sizeof(double));
   sweep->factors = memory_zeroed(terms, sizeof(double));
   if (!sweep->goals || !sweep->lambda || !sweep->weight || !sweep->slope || !sweep->right ||
-      !sweep->correction || !sweep->factors)
+      !sweep->correction || !sweep->diagonal || !sweep->factors)
     return status_no_memory("the adjoint of a run");
   for (size_t g = 0; g < goals; g++) TRY(create_goal(sweep, &sweep->goals[g]));
   TRY(fem_damping_create(&sweep->damping, &sweep->replay.system));
@@ -140,6 +146,16 @@ static Status multiply(void *self, const double *x, double *y) {
     if (is_damped(sweep)) y[i] -= sweep->damping.now[dof] + c * sweep->damping.rate[dof];
   }
   return STATUS_OK;
+}
+
+void fem_sweep_begin_step(FemSweep *sweep) {
+  const FemMatrix *stiffness = &sweep->tangent.stiffness;
+  const int *dofs = sweep->replay.system.numbering.dof_of_unknown;
+  double c = fem_replay_formula(&sweep->replay, sweep->step).c;
+  sweep->is_light = c > 0 && c >= fem_dominance_least(&sweep->replay.system, stiffness, dofs, sweep->weight);
+  for (int i = 0; i < sweep->replay.n; i++)
+    sweep->diagonal[i] =
+        stiffness->value[stiffness->col_begin[dofs[i]]] + c * c * fem_replay_mass(&sweep->replay, i);
 }
 
 static Status factorise(FemSweep *sweep) {
@@ -209,9 +225,14 @@ static Status solve(FemSweep *sweep, int g, double *beta, double *residual) {
   double whole = find_left(sweep, g, beta), left = whole;
   if (whole == 0) return STATUS_OK; // after all terms
   for (int round = 0; round < MAX_ROUNDS && !(left <= RESIDUAL * whole); round++) {
-    if (sweep->factorised == 0 || (sweep->is_spent && sweep->factorised != sweep->step))
-      TRY(factorise(sweep));
-    Status status = correct(sweep, g, AIM * RESIDUAL * whole / left, beta, &left);
+    bool is_due = sweep->factorised == 0 || (sweep->is_spent && sweep->factorised != sweep->step);
+    if (is_due && !sweep->is_light) TRY(factorise(sweep));
+    double aim = sweep->is_light ? LIGHT_AIM : AIM;
+    Status status = correct(sweep, g, aim * RESIDUAL * whole / left, beta, &left);
+    if (sweep->is_light) {
+      TRY(status);
+      continue;
+    }
     sweep->is_spent = sweep->is_spent || status || sweep->krylov.directions > MOST_DIRECTIONS;
     if (status && (status != STATUS_SOLVER || sweep->factorised == sweep->step)) return status;
   }

@@ -37,8 +37,10 @@ typedef struct FemSweep {
   double *lambda, *weight; // scratch                                 (3 V)
   double *right;           // what is left of the step's system       (n)
   double *correction;      // scratch                                 (n)
+  double *diagonal;        // of the step's matrix                    (n)
   int step, factorised;    // where it is; of which step the factor is, 0: of none
   bool is_spent;           // that factor does not serve any more
+  bool is_light;           // at the step mass dominates (fem/gradient/path/dominance.h)
 } FemSweep;
 
 // STATUS_MEMORY, or as the replay's creation. Destroy it also after a failure.
@@ -62,6 +64,8 @@ double fem_sweep_slope(const FemSweep *sweep, int g, size_t dof);
 // ∂g/∂v likewise.
 double fem_sweep_rate(const FemSweep *sweep, int g, size_t dof);
 
+// Finds how the step, at which the tangent is, is solved. To be called before its first solution.
+void fem_sweep_begin_step(FemSweep *sweep);
 // Solves the step for a goal whose own derivatives are there: β, α, and what is left of ∂g/∂x and ∂g/∂v on
 // the prescribed coordinates. `largest` grows to its residual. STATUS_SOLVER: the residual is too large
 // (fem_gradient_judge).

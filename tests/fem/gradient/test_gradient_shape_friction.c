@@ -60,7 +60,8 @@ START_TEST(a_thrown_block_that_sticks_and_slips_agrees_by_scale_with_differences
 }
 END_TEST
 
-// Of an overlap of 1e-10 m second differences of forces are rounding.
+// Of an overlap of 1e-10 m second differences of forces are rounding. Steps and adjoints leave 1e-12 of what
+// they solve for, over the overlap's share 1e-9 of the block's height.
 START_TEST(a_block_that_barely_touches_agrees_by_scale_with_differences_of_replays) {
   const Asked asked = {
       .scene = "gradient_slide",
@@ -69,7 +70,7 @@ START_TEST(a_block_that_barely_touches_agrees_by_scale_with_differences_of_repla
                  "place: {translate: [0.03, 0.04, 0.0999999999]}, material: {law: stvk, young: 2e5, poisson: "
                  "0.2, density: 1200}}",
       .step = 1e-3,
-      .tolerance = 1e-4, // rounding
+      .tolerance = 1e-3,
       .least_steps = 10,
       .of = {"force:upper:lower:z"},
       .by = {UPPER "scale"}};
