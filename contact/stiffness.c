@@ -125,16 +125,22 @@ static Status order_pairs(ContactStiffness *stiffness, const ContactLayout *layo
 
 // ---- The sum over the cells of two elements.
 
-// The part of a pair's matrix, of `width` rows, that belongs to sides which carry unknowns.
-static void add_pair(ContactStiffness *stiffness, const ContactLayout *layout, const ContactPair *pair,
-                     const double *matrix) {
+// Where the vertices of a pair stand, −1: on a side without unknowns. Returns how many they are.
+static int place_pair(ContactStiffness *stiffness, const ContactLayout *layout, const ContactPair *pair,
+                      int places[8]) {
   const double *weight = layout->interfaces[pair->interface].weight;
-  size_t stride = 3 * (size_t)stiffness->most;
-  int places[8], count = pair->cells[1] < 0 ? 4 : 8, width = 3 * count;
+  int count = pair->cells[1] < 0 ? 4 : 8;
   for (int v = 0; v < count; v++)
     places[v] = weight[v / 4] > 0
                     ? place_of(stiffness, contact_layout_vertices(layout, pair->cells[v / 4])[v % 4])
                     : -1;
+  return count;
+}
+
+// The part of a pair's matrix that belongs to sides which carry unknowns.
+static void add_pair(ContactStiffness *stiffness, int count, const int places[8], const double *matrix) {
+  size_t stride = 3 * (size_t)stiffness->most;
+  int width = 3 * count;
   for (int v = 0; v < count; v++)
     for (int w = 0; w < count; w++) {
       if (places[v] < 0 || places[w] < 0) continue;
@@ -184,13 +190,23 @@ static void bend(const ContactLayout *layout, const ContactEvaluation *evaluatio
   contact_field_bend(layout, pair, coordinates, matrix);
 }
 
+// Two elements that have one pair need no sum.
 static void hand_on_portion(ContactStiffness *stiffness, const ContactLayout *layout, int first, int end,
-                            const ContactPair *pairs, const double *matrices,
+                            int whole, const ContactPair *pairs, const double *matrices,
                             const ContactStiffnessSink *sink) {
   const ContactStiffnessKey *order = stiffness->order;
   for (int k = first; k < end; k++) {
-    if (k > 0 && !are_alike(&order[k], &order[k - 1])) hand_on(stiffness, sink);
-    add_pair(stiffness, layout, &pairs[order[k].pair], matrices + MATRIX_SIZE * (size_t)(k - first));
+    const double *matrix = matrices + MATRIX_SIZE * (size_t)(k - first);
+    bool is_first = k == 0 || !are_alike(&order[k], &order[k - 1]);
+    bool is_last = k + 1 == whole || !are_alike(&order[k], &order[k + 1]);
+    int places[8], count = place_pair(stiffness, layout, &pairs[order[k].pair], places);
+    if (is_first && is_last && stiffness->count == count) {
+      sink->add_dense(sink->self, count, stiffness->vertices, matrix);
+      forget_vertices(stiffness);
+      continue;
+    }
+    add_pair(stiffness, count, places, matrix);
+    if (is_last) hand_on(stiffness, sink);
   }
 }
 
@@ -208,9 +224,8 @@ Status contact_stiffness_add(ContactStiffness *stiffness, const ContactLayout *l
     for (int k = first; k < end; k++)
       bend(layout, evaluation, order[k].pair, way, matrices + MATRIX_SIZE * (size_t)(k - first));
 #pragma omp ordered
-    hand_on_portion(stiffness, layout, first, end, evaluation->pairs, matrices, sink);
+    hand_on_portion(stiffness, layout, first, end, count, evaluation->pairs, matrices, sink);
   }
-  hand_on(stiffness, sink);
   return STATUS_OK;
 }
 

@@ -59,28 +59,26 @@ typedef struct Sums {
   double first[8];      // ∫_P λ_z dx of both tetrahedra [m³]
 } Sums;
 
-static void add_triangle(Sums *sums, const ContactTriangle *triangle, const double *r, const double *p,
-                         const double *q) {
-  double sum[8], doubled = triangle->share;
-  sums->fraction[triangle->face] += doubled;
+// ∫ ψ_z ψ_w over a triangle of `doubled` the area, from the values at its corners.
+FASTEST static void add_triangle(double squares[8][8], double doubled, const double *r, const double *p,
+                                 const double *q) {
+  double sum[8];
   for (int z = 0; z < 8; z++) sum[z] = r[z] + p[z] + q[z];
   for (int z = 0; z < 8; z++)
-    for (int w = 0; w <= z; w++)
-      sums->face[triangle->face][z][w] +=
-          doubled / 12 * (r[z] * r[w] + p[z] * p[w] + q[z] * q[w] + sum[z] * sum[w]);
+    for (int w = 0; w < 8; w++)
+      squares[z][w] += doubled / 12 * (r[z] * r[w] + p[z] * p[w] + q[z] * q[w] + sum[z] * sum[w]);
 }
 
 // ∫ ψ_z ψ_w over the faces.
 static void add_faces(ContactClipped *clipped, Sums *sums) {
   for (int i = 0; i < clipped->triangle_count; i++) {
     const ContactTriangle *triangle = &clipped->triangles[i];
-    add_triangle(sums, triangle, contact_clipped_lanes(clipped, triangle->vertex[0]),
+    sums->fraction[triangle->face] += triangle->share;
+    add_triangle(sums->face[triangle->face], triangle->share,
+                 contact_clipped_lanes(clipped, triangle->vertex[0]),
                  contact_clipped_lanes(clipped, triangle->vertex[1]),
                  contact_clipped_lanes(clipped, triangle->vertex[2]));
   }
-  for (int f = 0; f < 8; f++)
-    for (int z = 0; z < 8; z++)
-      for (int w = 0; w < z; w++) sums->face[f][w][z] = sums->face[f][z][w];
 }
 
 // ∫ ψ_z over each pyramid is its volume times the mean of ψ_z at its corners.

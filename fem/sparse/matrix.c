@@ -86,6 +86,15 @@ static void add_block(FemMatrix *matrix, int v, int w, const double block[9]) {
   }
 }
 
+// The same where both vertices have all their unknowns; the block is in a matrix with rows of `stride`.
+static void add_whole_block(FemMatrix *matrix, int v, int w, const double *from, int stride, double scale) {
+  int row_offset = find_block(matrix->blocks, v, w);
+  for (int c = 0; c < 3; c++) {
+    double *value = matrix->value + fem_matrix_blocks_rows(matrix->blocks, v, c, row_offset);
+    for (int r = 0; r < 3; r++) value[r] += scale * from[stride * r + c];
+  }
+}
+
 // The lower triangle of block (3 × 3) += into v's own entries.
 static void add_own_block(FemMatrix *matrix, int v, const double block[9]) {
   const int *unknown = matrix->unknown_of_dof + 3 * v;
@@ -108,6 +117,10 @@ void fem_matrix_add(FemMatrix *matrix, int count, const int *vertices, const dou
       if (w < v || !active[w]) continue;
       const double *from = dense + (size_t)(3 * j) * (size_t)(3 * count) + 3 * i;
       double block[9];
+      if (w > v && active[v] == 3 && active[w] == 3) {
+        add_whole_block(matrix, v, w, from, 3 * count, scale);
+        continue;
+      }
       for (int r = 0; r < 3; r++, from += 3 * count)
         for (int c = 0; c < 3; c++) block[3 * r + c] = scale * from[c];
       if (w == v)
