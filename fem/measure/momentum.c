@@ -227,6 +227,7 @@ static void find_common(const FemMomentum *momentum, const int *groups) {
   const FemModel *model = momentum->system->model;
   for (int b = 0; b < momentum->body_count; b++) {
     FemMomentumMotion *motion = &momentum->motions[groups[b]];
+    motion->body_count++;
     motion->mass += model->bodies[b].mass;
     vec3_accumulate(motion->common, vec3_at(momentum->now[b].p));
   }
@@ -252,7 +253,8 @@ static void find_motions(const FemMomentum *momentum, const int *groups) {
 
 // An estimate of S of a body at the end of the run, `left` [s] from now, the larger of two: S so far, the
 // impulse of its weight until then, and the momentum that a braking force has still to stop; or the momentum
-// that a pressing obstacle and bodies of the group may transfer to it.
+// that a pressing obstacle and other bodies of the group may transfer to it. What skids along an obstacle
+// keeps most of its own.
 static double expected_of(const FemMomentum *momentum, const FemMomentumBody *body, int number, double left,
                           const FemMomentumMotion *motion) {
   const FemModel *model = momentum->system->model;
@@ -260,7 +262,8 @@ static double expected_of(const FemMomentum *momentum, const FemMomentumBody *bo
   double mass = model->bodies[number].mass, size = vec3_length(force),
          braked = size > 0 ? fmax(-vec3_dot(p, force) / size, 0) : 0;
   double acting = body->size + weight_of(momentum, number) * fmax(left, 0) + braked,
-         moving = fmax(fmin(motion->momentum, mass * motion->speed), mass * body->driven);
+         given = motion->body_count > 1 ? fmin(motion->momentum, mass * motion->speed) : 0,
+         moving = fmax(given, mass * body->driven);
   return fmax(fmax(acting, moving), mass * fem_model_velocity_tolerance(model));
 }
 

@@ -27,6 +27,7 @@ typedef struct FemMomentumBody {
 
 // What a collision may stop, or transfer to a body of a group.
 typedef struct FemMomentumMotion {
+  int body_count;   // of the group
   double mass;      // [kg]
   double common[3]; // the velocity of the group that nothing detects (fem/model/floating.h) [m/s]
   double momentum;  // Σ |p| of all bodies [kg m/s]
