@@ -2,6 +2,7 @@
 #include "contact/stiffness.h"
 
 #include <assert.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -103,6 +104,14 @@ static bool are_alike(const ContactStiffnessKey *a, const ContactStiffnessKey *b
   return compare_elements(a, b) == 0;
 }
 
+static ContactStiffnessKey key_of(const ContactLayout *layout, const ContactPair *pair, int place) {
+  const int *cells = pair->cells;
+  return (ContactStiffnessKey){pair->interface,
+                               {contact_layout_origin(layout, cells[0]),
+                                cells[1] < 0 ? -1 : contact_layout_origin(layout, cells[1])},
+                               place};
+}
+
 // Those of the interface; `*ordered`: how many they are.
 static Status order_pairs(ContactStiffness *stiffness, const ContactLayout *layout, int interface, int count,
                           const ContactPair *pairs, int *ordered) {
@@ -111,13 +120,8 @@ static Status order_pairs(ContactStiffness *stiffness, const ContactLayout *layo
                       sizeof *stiffness->order))
     return status_no_memory("contact stiffness");
   for (int k = 0; k < count; k++) {
-    const int *cells = pairs[k].cells;
     if (interface != CONTACT_ALL_INTERFACES && pairs[k].interface != interface) continue;
-    stiffness->order[(*ordered)++] =
-        (ContactStiffnessKey){pairs[k].interface,
-                              {contact_layout_origin(layout, cells[0]),
-                               cells[1] < 0 ? -1 : contact_layout_origin(layout, cells[1])},
-                              k};
+    stiffness->order[(*ordered)++] = key_of(layout, &pairs[k], k);
   }
   if (*ordered > 1) qsort(stiffness->order, (size_t)*ordered, sizeof *stiffness->order, compare);
   return STATUS_OK;
@@ -249,17 +253,15 @@ static Status merge(const ContactStiffness *stiffness, int count, ContactCoupled
   return STATUS_OK;
 }
 
-// Visits the vertices that any two elements with a pair among these couple, but for those that are coupled.
+// Visits the vertices that any two elements with a pair among these couple. None of them is coupled.
 static Status visit_elements(ContactStiffness *stiffness, const ContactLayout *layout, int count,
                              const ContactPair *pairs, ContactCoupled *coupled, void *visitor,
                              Status (*visit)(void *visitor, int count, const int *vertices)) {
-  int new_count = 0, place = 0;
+  int new_count = 0;
   TRY(order_pairs(stiffness, layout, CONTACT_ALL_INTERFACES, count, pairs, &count));
   for (int k = 0; k < count; k++) {
     const ContactStiffnessKey key = stiffness->order[k];
     if (k > 0 && are_alike(&key, &stiffness->order[k - 1])) continue;
-    while (place < coupled->count && compare_elements(&coupled->keys[place], &key) < 0) place++;
-    if (place < coupled->count && are_alike(&coupled->keys[place], &key)) continue;
     const ContactPair *pair = &pairs[key.pair];
     for (int side = 0; side < 2; side++)
       if (layout->interfaces[pair->interface].weight[side] > 0)
@@ -272,13 +274,61 @@ static Status visit_elements(ContactStiffness *stiffness, const ContactLayout *l
   return merge(stiffness, new_count, coupled);
 }
 
+// Looks for elements that are coupled among those of one interface in the order of the candidates, in which
+// one cell meets several in turn.
+typedef struct Lookup {
+  const ContactCoupled *coupled;
+  ContactStiffnessKey last; // that was looked for
+  bool was_found;
+  int begin, end; // keys of its interface and first element
+} Lookup;
+
+// The first of the keys that is not before this one, by its elements.
+static int find_key(const ContactCoupled *coupled, int low, int high, const ContactStiffnessKey *key) {
+  while (low < high) {
+    int middle = low + (high - low) / 2;
+    if (compare_elements(&coupled->keys[middle], key) < 0)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+static bool is_coupled(Lookup *lookup, const ContactStiffnessKey *key) {
+  const ContactCoupled *coupled = lookup->coupled;
+  if (are_alike(key, &lookup->last)) return lookup->was_found;
+  if (key->interface != lookup->last.interface || key->elements[0] != lookup->last.elements[0]) {
+    ContactStiffnessKey edge = {key->interface, {key->elements[0], INT_MIN}, 0};
+    lookup->begin = find_key(coupled, 0, coupled->count, &edge);
+    edge.elements[1] = INT_MAX;
+    lookup->end = find_key(coupled, lookup->begin, coupled->count, &edge);
+  }
+  int place = find_key(coupled, lookup->begin, lookup->end, key);
+  lookup->last = *key;
+  lookup->was_found = place < lookup->end && are_alike(&coupled->keys[place], key);
+  return lookup->was_found;
+}
+
+// The box round a cell, found once for those that follow each other.
+typedef struct Box {
+  int cell; // −1: none
+  double sides[6];
+} Box;
+
+static const double *box_of(Box *box, const ContactLayout *layout, int cell, const double *positions) {
+  if (box->cell != cell) contact_bounds_of_tet(layout->mesh.cells[cell], positions, box->sides);
+  box->cell = cell;
+  return box->sides;
+}
+
 static bool is_within(const ContactLayout *layout, const ContactPair *pair, double time,
-                      const double *positions, double reach) {
+                      const double *positions, double reach, Box *first) {
   if (pair->cells[1] >= 0) {
-    double box_a[6], box_b[6];
-    contact_bounds_of_tet(layout->mesh.cells[pair->cells[0]], positions, box_a);
-    contact_bounds_of_tet(layout->mesh.cells[pair->cells[1]], positions, box_b);
-    return contact_bounds_distance(box_a, box_b) <= reach + 3 * layout->nudge;
+    double other[6];
+    contact_bounds_of_tet(layout->mesh.cells[pair->cells[1]], positions, other);
+    return contact_bounds_distance(box_of(first, layout, pair->cells[0], positions), other) <=
+           reach + 3 * layout->nudge;
   }
   double x[12];
   contact_layout_gather_whole(layout, pair->cells[0], positions, x);
@@ -291,12 +341,16 @@ Status contact_stiffness_couple(ContactStiffness *stiffness, const ContactLayout
                                 double reach, ContactCoupled *coupled, void *visitor,
                                 Status (*visit)(void *visitor, int count, const int *vertices)) {
   int count = 0;
+  Lookup lookup = {.coupled = coupled, .last = {.interface = -1}};
+  Box box = {.cell = -1};
   for (int k = 0; k < candidates->count; k++) {
-    if (!is_within(layout, &candidates->pairs[k], time, positions, reach)) continue;
+    const ContactPair *pair = &candidates->pairs[k];
+    const ContactStiffnessKey key = key_of(layout, pair, k);
+    if (is_coupled(&lookup, &key) || !is_within(layout, pair, time, positions, reach, &box)) continue;
     if (!memory_reserve((void **)&stiffness->near_pairs, &stiffness->near_capacity, (size_t)count + 1,
                         sizeof(ContactPair)))
       return status_no_memory("contact couplings");
-    stiffness->near_pairs[count++] = candidates->pairs[k];
+    stiffness->near_pairs[count++] = *pair;
   }
   return visit_elements(stiffness, layout, count, stiffness->near_pairs, coupled, visitor, visit);
 }
