@@ -40,7 +40,7 @@ struct FemIdaSolver {
   bool follows;
   double factor_c, matrix_c; // of the factor, of the system's matrix as it stands [1/s]
   double goal;               // of the next solution; 0: FEM_SOLVED
-  int followed;              // iterations since the last factor that a newer one would have saved
+  int followed;              // iterations since the last factor
   FemCg cg;
   double *piece; // scratch, over ranks                        (part->count)
   double product_s;
@@ -163,7 +163,7 @@ static Status solve_following(FemIdaSolver *solver, double *x) {
     join(part, solver->right, right);
   }
   Status status = fem_cg_solve(&solver->cg, &problem, right, left, &iterations, &end);
-  solver->followed += iterations > 1 ? (int)iterations - 1 : 0; // the first one a new factor takes, too
+  solver->followed += (int)iterations;
   if (part->order) fem_part_take(part, left, x);
   return status;
 }
