@@ -87,8 +87,9 @@
 // Held by test_balance, test_scenes.
 #define FEM_BALANCE_OF_INERTIA (2 * FEM_MOMENTUM)
 
-// What is left has at most this share of the power Σ m v̇ v (of moduli) along a body's rotation. That is 2 K a
-// radian, K the kinetic energy, so with 1/4π a turn gives FEM_ENERGY of K. This is as much.
+// Once what is left has given a body's rotation FEM_RESERVE of the promise of energy, it goes on with at most
+// this share of the power Σ m v̇ v (of moduli). That is 2 K a radian, K the kinetic energy, so with 1/4π a turn
+// gives FEM_ENERGY of K. This is as much.
 // Held by test_balance.
 #define FEM_BALANCE_OF_TURN (2 * FEM_RESERVE * FEM_BALANCE)
 

@@ -262,6 +262,7 @@ static Status step_ida(FemIntegrator *integrator) {
   int flag = IDASolve(ida->memory, integrator->def.end, &reached, ida->y, ida->y_dot, IDA_ONE_STEP);
   if (flag < 0) return give_up(integrator, flag);
   use_evaluated(ida, reached);
+  fem_balance_keep(&ida->balance, ida->system->model, reached - integrator->time);
   integrator->time = reached;
   integrator->has_steps = true;
   integrator->is_at_knot = integrator->stops_at_knot && reached == integrator->stop;

@@ -8,14 +8,19 @@
 #include "base/vec3.h"
 #include "fem/model/limits.h"
 #include "fem/model/parts.h"
+#include "fem/sparse/vector.h"
 
 Status fem_balance_create(FemBalance *balance, int body_count) {
   balance->bodies = memory_zeroed((size_t)body_count, sizeof *balance->bodies);
-  return balance->bodies ? STATUS_OK : status_no_memory("the integrator");
+  balance->given = memory_zeroed((size_t)body_count, sizeof *balance->given);
+  balance->begin = memory_zeroed((size_t)body_count + 1, sizeof *balance->begin);
+  return balance->bodies && balance->given && balance->begin ? STATUS_OK : status_no_memory("the integrator");
 }
 
 void fem_balance_destroy(FemBalance *balance) {
   memory_free(balance->bodies);
+  memory_free(balance->given);
+  memory_free(balance->begin);
 }
 
 // Of a body's vertices in contact.
@@ -58,51 +63,112 @@ static Motion motion_of(const FemModel *model, const FemModelBody *body, const F
   return motion;
 }
 
-// The sums of each body.
-static void sum_up(FemBalance *balance, const FemModel *model, const FemPart *part, const FemState *state,
-                   const double *forces, const double *residual) {
-  const size_t numbers = sizeof(FemBalanceBody) / sizeof(double);
-  Motion motion;
-  for (int b = 0; b < model->body_count; b++) balance->bodies[b] = (FemBalanceBody){0};
-  for (int i = 0, body = -1; i < part->count; i++) {
-    int dof = fem_part_dof(part, i), c = dof % 3;
-    while (body < 0 || dof / 3 >= model->bodies[body].vertex_end)
-      motion = motion_of(model, &model->bodies[++body], state);
-    FemBalanceBody *sums = &balance->bodies[body];
-    double needed = fabs(residual[i] + forces[dof]), turn[3], relative[3];
-    vec3_store(turn, vec3_cross(motion.spin, vec3_sub(vec3_at(state->positions + dof - c), motion.centre)));
-    vec3_store(relative, vec3_sub(vec3_at(state->velocities + dof - c), motion.velocity));
-    sums->unbalanced += fabs(residual[i]);
-    sums->needed += needed;
-    sums->power += residual[i] * turn[c];
-    sums->turnover += needed * fabs(relative[c]);
+// This rank's unknowns are in the order of the bodies.
+static void divide(FemBalance *balance, const FemModel *model, const FemPart *part) {
+  for (int b = 0, end = 0; b < model->body_count; b++) {
+    while (end < part->count && fem_part_dof(part, end) / 3 < model->bodies[b].vertex_end) end++;
+    balance->begin[b + 1] = end;
   }
-  ranks()->sum(&balance->bodies->unbalanced, numbers * (size_t)model->body_count); // numbers only
+}
+
+static void add_forces(FemBalanceBody *sums, const FemPart *part, int begin, int end, const double *forces,
+                       const double *residual) {
+  for (int i = begin; i < end; i++) {
+    sums->unbalanced += fabs(residual[i]);
+    sums->needed += fabs(residual[i] + forces[fem_part_dof(part, i)]);
+  }
+}
+
+static void add_power(FemBalanceBody *sums, const FemModel *model, const FemPart *part, int begin, int end,
+                      const Motion *motion, const FemState *state, const double *forces,
+                      const double *residual) {
+  for (int i = begin; i < end; i++) {
+    int dof = fem_part_dof(part, i), c = dof % 3;
+    double turn[3], relative[3];
+    vec3_store(turn, vec3_cross(motion->spin, vec3_sub(vec3_at(state->positions + dof - c), motion->centre)));
+    vec3_store(relative, vec3_sub(vec3_at(state->velocities + dof - c), motion->velocity));
+    sums->power += residual[i] * turn[c];
+    sums->turnover += fabs(residual[i] + forces[dof]) * fabs(relative[c]);
+    sums->energy += 0.5 * model->mass[dof / 3] * relative[c] * relative[c];
+  }
 }
 
 static double young_of(const FemMaterial *material) {
   return material->young;
 }
 
-double fem_balance_excess(FemBalance *balance, const FemModel *model, const FemPart *part,
-                          const FemState *state, const double *forces, const double *pressing,
-                          const double *residual) {
-  double worst = 0, gravity = model->scene->has_gravity ? vec3_length(vec3_at(model->scene->gravity)) : 0;
-  const bool has_turns = !fem_model_has_linear_materials(model); // Hooke's law in fixed axes knows none
-  sum_up(balance, model, part, state, forces, residual);
+// Numbers only.
+static void add_over_ranks(FemBalance *balance, const FemModel *model) {
+  ranks()->sum(&balance->bodies->unbalanced,
+               sizeof(FemBalanceBody) / sizeof(double) * (size_t)model->body_count);
+}
+
+// What is left that needs no balance: a share of the weight, or of what presses where there is none, or
+// rounding of the force by which an element is strained by time.tolerance.
+static double least_of(const FemModel *model, int b, const double *pressing) {
+  const FemModelBody *body = &model->bodies[b];
+  double gravity = model->scene->has_gravity ? vec3_length(vec3_at(model->scene->gravity)) : 0;
+  double weight = gravity * body->mass;
+  if (pressing && !(gravity > 0)) weight = pressed_on(pressing, body);
+  double young = fem_model_parts_least(model, b, young_of);
+  return fmax(FEM_BALANCE * weight,
+              FEM_ROUNDING * model->scene->tolerance * young * model->edge * model->edge);
+}
+
+// The largest excess of what is left, infinite where one is no number.
+static double excess_of_forces(FemBalance *balance, const FemModel *model, const FemPart *part,
+                               const double *forces, const double *pressing, const double *residual) {
+  double worst = 0;
+  divide(balance, model, part);
+#pragma omp parallel for schedule(dynamic) if (part->count > FEM_VECTOR_LONG)
+  for (int b = 0; b < model->body_count; b++) {
+    balance->bodies[b] = (FemBalanceBody){0};
+    add_forces(&balance->bodies[b], part, balance->begin[b], balance->begin[b + 1], forces, residual);
+  }
+  add_over_ranks(balance, model);
   for (int b = 0; b < model->scene->body_count; b++) {
-    const FemModelBody *body = &model->bodies[b];
-    double weight = gravity * body->mass;
-    if (pressing && !(gravity > 0)) weight = pressed_on(pressing, body);
-    const FemBalanceBody *sums = &balance->bodies[b];
-    // Without weight: rounding of the force by which an element is strained by time.tolerance.
-    double young = fem_model_parts_least(model, b, young_of);
-    double rounding = FEM_ROUNDING * model->scene->tolerance * young * model->edge * model->edge;
-    double least = fmax(FEM_BALANCE * weight, rounding), rest = sums->unbalanced;
-    double excess = rest / fmax(least, FEM_BALANCE_OF_INERTIA * sums->needed);
-    if (has_turns && rest > least && sums->power != 0)
-      excess = fmax(excess, fabs(sums->power) / (FEM_BALANCE_OF_TURN * sums->turnover));
+    FemBalanceBody *sums = &balance->bodies[b];
+    double least = least_of(model, b, pressing);
+    double excess = sums->unbalanced / fmax(least, FEM_BALANCE_OF_INERTIA * sums->needed);
+    sums->is_within = sums->unbalanced <= least;
     if (!(excess <= worst)) worst = isnan(excess) ? INFINITY : excess;
   }
   return worst;
+}
+
+// The same of its power on rotations, where the forces balance and it adds to what was given already.
+static double excess_of_power(FemBalance *balance, const FemModel *model, const FemPart *part,
+                              const FemState *state, const double *forces, const double *residual) {
+  double worst = 0;
+#pragma omp parallel for schedule(dynamic) if (part->count > FEM_VECTOR_LONG)
+  for (int b = 0; b < model->scene->body_count; b++) {
+    FemBalanceBody *sums = &balance->bodies[b];
+    bool is_within = sums->is_within != 0;
+    *sums = (FemBalanceBody){0};
+    if (is_within) continue;
+    Motion motion = motion_of(model, &model->bodies[b], state);
+    add_power(sums, model, part, balance->begin[b], balance->begin[b + 1], &motion, state, forces, residual);
+  }
+  add_over_ranks(balance, model);
+  for (int b = 0; b < model->scene->body_count; b++) {
+    const FemBalanceBody *sums = &balance->bodies[b];
+    bool adds_up = balance->given[b] * sums->power > 0 &&
+                   fabs(balance->given[b]) > FEM_RESERVE * FEM_ENERGY * sums->energy;
+    double allowed = FEM_BALANCE_OF_TURN * sums->turnover;
+    if (adds_up && fabs(sums->power) > worst * allowed) worst = fabs(sums->power) / allowed;
+  }
+  return worst;
+}
+
+double fem_balance_excess(FemBalance *balance, const FemModel *model, const FemPart *part,
+                          const FemState *state, const double *forces, const double *pressing,
+                          const double *residual) {
+  double excess = excess_of_forces(balance, model, part, forces, pressing, residual);
+  // Hooke's law in fixed axes knows no rotations.
+  if (!(excess <= 1) || fem_model_has_linear_materials(model)) return excess;
+  return fmax(excess, excess_of_power(balance, model, part, state, forces, residual));
+}
+
+void fem_balance_keep(FemBalance *balance, const FemModel *model, double step) {
+  for (int b = 0; b < model->body_count; b++) balance->given[b] += step * balance->bodies[b].power;
 }
