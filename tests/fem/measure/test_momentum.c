@@ -232,7 +232,7 @@ END_TEST
 START_TEST(a_stack_that_lands_is_balanced) {
   SceneRun run;
   scene_run(&run, "../../examples/15_sleepers",
-            (const char *const[]){"time.end=0.065", "output.vtu=false", NULL});
+            (const char *const[]){"time.end=0.07", "output.vtu=false", NULL});
   ck_assert_int_gt(run.result.retries.momentum, 0);
   ck_assert_msg(run.result.momentum.gap <= 1e-3, "%g", run.result.momentum.gap);
   ck_assert_double_gt(run.result.contact.force_max, 0);
