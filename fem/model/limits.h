@@ -65,9 +65,10 @@
 // Held by test_momentum.
 #define FEM_MOMENTUM_FAR ((1 - 0.5 * FEM_RESERVE) * FEM_MOMENTUM)
 
-// What a method of order 1 may lack while a force rises and recovers as the force falls.
+// What a method of order 1 may lack while a force rises and recovers as the force falls: together with
+// FEM_MOMENTUM_FAR the promise.
 // Held by test_momentum.
-#define FEM_MOMENTUM_OWED (FEM_MOMENTUM_FAR - FEM_MOMENTUM_NEAR)
+#define FEM_MOMENTUM_OWED (FEM_MOMENTUM - FEM_MOMENTUM_FAR)
 
 // What a step may always add, as a share of the promise of momentum.
 // Held by test_momentum.

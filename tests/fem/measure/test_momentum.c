@@ -171,7 +171,7 @@ START_TEST(at_the_edges_of_what_may_be_missing_a_step_just_stands) {
 END_TEST
 
 // Where a force rises in the step a method of order 1 lacks half of the rise times the step, which it
-// recovers as the force falls; up to 3e-4 of all impulses are not counted.
+// recovers as the force falls; up to 1e-4 of all impulses are not counted.
 START_TEST(what_order_1_recovers_is_not_counted_up_to_its_limit) {
   Falling falling;
   open_falling(&falling);
@@ -181,7 +181,7 @@ START_TEST(what_order_1_recovers_is_not_counted_up_to_its_limit) {
   next->impulse[2] = -next->size;
   next->force[2] = -9.81 * falling.run.model.bodies[0].mass + 10 * next->size; // beyond its weight, upwards
   for (int is_more = 0; is_more < 2; is_more++) {
-    next->change[2] = next->impulse[2] + (6e-4 + 3e-4) * (is_more ? 1 + 1e-6 : 1 - 1e-6) * next->size;
+    next->change[2] = next->impulse[2] + (6e-4 + 1e-4) * (is_more ? 1 + 1e-6 : 1 - 1e-6) * next->size;
     ck_assert_int_eq(fem_momentum_is_refused(&falling.momentum, 0.1), is_more);
   }
   close_falling(&falling);
