@@ -229,8 +229,9 @@ static Status solve(FemSweep *sweep, int g, double *beta, double *residual) {
     if (is_due && !sweep->is_light) TRY(factorise(sweep));
     double aim = sweep->is_light ? LIGHT_AIM : AIM;
     Status status = correct(sweep, g, aim * RESIDUAL * whole / left, beta, &left);
-    if (sweep->is_light) {
-      TRY(status);
+    if (sweep->is_light) { // but for damping and friction, of which the bound knows nothing
+      if (status && status != STATUS_SOLVER) return status;
+      sweep->is_light = !status && sweep->krylov.directions < FEM_KRYLOV_MOST;
       continue;
     }
     sweep->is_spent = sweep->is_spent || status || sweep->krylov.directions > MOST_DIRECTIONS;

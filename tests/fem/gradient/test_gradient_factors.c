@@ -269,6 +269,25 @@ START_TEST(short_steps_take_fewer_factors) {
 }
 END_TEST
 
+START_TEST(a_step_that_the_diagonal_does_not_serve_takes_a_factor) {
+  const Asked asked = asked_of(_i);
+  FemReplaySteps steps;
+  Answer plain, other;
+  find_steps(&asked, &steps);
+  may_be_light = true;
+  differentiate(&asked, false, &steps, &plain);
+  int count = count_factors(&steps);
+  differentiate(&asked, true, &steps, &other);
+  may_be_light = false;
+  ck_assert(has_failed);
+  ck_assert_int_ge(count_factors(&steps), count);
+  check_same(&plain, &other);
+  destroy(&plain);
+  destroy(&other);
+  fem_replay_steps_destroy(&steps);
+}
+END_TEST
+
 // Steps by a matrix that lacks something stagnate before they are balanced: GMRES goes on.
 START_TEST(a_step_is_balanced_also_with_a_poor_matrix) {
   const Asked asked = asked_of(_i);
@@ -293,6 +312,7 @@ int main(void) {
   tcase_add_loop_test(test_case, the_residual_that_is_told_is_that_of_the_worst_system, 0, SCENE_COUNT);
   tcase_add_loop_test(test_case, an_earlier_factor_that_does_not_serve_is_made_anew, 0, SCENE_COUNT);
   tcase_add_loop_test(test_case, short_steps_take_fewer_factors, 0, RUB);
+  tcase_add_loop_test(test_case, a_step_that_the_diagonal_does_not_serve_takes_a_factor, 0, RUB);
   tcase_add_loop_test(test_case, a_step_is_balanced_also_with_a_poor_matrix, SLIDE, DAMPED + 1);
   return suite_run("gradient_factors", test_case, 120);
 }
