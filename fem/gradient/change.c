@@ -317,7 +317,7 @@ static double *elastic_of(FemChange *change) {
   return change->wants_elastic ? &change->elastic : NULL;
 }
 
-// Plasticity's part is apart (fem/gradient/yielding.h).
+// Plasticity's part is apart (fem/gradient/effect/yielding.h).
 static Status change_material(FemChange *change, FemVaried *varied, const FemTangent *tangent,
                               const FemParameter *parameter, bool follows) {
   FemParameterKind constant = parameter->kind;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The stiffness K = −∂f/∂x at a state over all coordinates, the prescribed ones included, and products with
 // it and with its parts: what derivatives are made of. Velocities count as 0; damping has its own derivatives
-// (fem/gradient/damping.h).
+// (fem/gradient/effect/damping.h).
 #ifndef TETLAP_FEM_GRADIENT_TANGENT_H
 #define TETLAP_FEM_GRADIENT_TANGENT_H
 
@@ -9,9 +9,9 @@
 #include "fem/effect/system.h"
 #include "fem/gradient/contact/answers.h"
 #include "fem/gradient/contact/remainder.h"
-#include "fem/gradient/damping.h"
-#include "fem/gradient/friction.h"
-#include "fem/gradient/yielding.h"
+#include "fem/gradient/effect/damping.h"
+#include "fem/gradient/effect/friction.h"
+#include "fem/gradient/effect/yielding.h"
 
 typedef struct FemTangent {
   FemSystem *system;      // borrowed

@@ -12,8 +12,8 @@
 //   (∂f/∂x)ᵀ λ = ½ (f(λ + v, x) − f(λ − v, x)).
 //
 // With the law linear f does not depend on positions, and the last is 0.
-#ifndef TETLAP_FEM_GRADIENT_DAMPING_H
-#define TETLAP_FEM_GRADIENT_DAMPING_H
+#ifndef TETLAP_FEM_GRADIENT_EFFECT_DAMPING_H
+#define TETLAP_FEM_GRADIENT_EFFECT_DAMPING_H
 
 #include "fem/effect/system.h"
 

@@ -3,8 +3,8 @@
 // are g's derivatives by forces, by the elastic energy and by the history that plasticity leaves for the next
 // step. From them follow those by positions, by the history of the step before, and by the constants of
 // materials. Those by positions through the forces are in the matrix.
-#ifndef TETLAP_FEM_GRADIENT_YIELDING_H
-#define TETLAP_FEM_GRADIENT_YIELDING_H
+#ifndef TETLAP_FEM_GRADIENT_EFFECT_YIELDING_H
+#define TETLAP_FEM_GRADIENT_EFFECT_YIELDING_H
 
 #include "fem/effect/elements/plasticity.h"
 #include "fem/effect/system.h"

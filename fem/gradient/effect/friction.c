@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/gradient/friction.h"
+#include "fem/gradient/effect/friction.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/gradient/damping.h"
+#include "fem/gradient/effect/damping.h"
 
 #include <math.h>
 #include <string.h>

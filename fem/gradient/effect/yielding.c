@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fem/gradient/yielding.h"
+#include "fem/gradient/effect/yielding.h"
 
 #include <string.h>
 

@@ -3,8 +3,8 @@
 // g's derivatives by friction's forces and by the history that friction leaves for the next step. From them
 // follow those by positions now and at the step before, by the history of the step before, and by the
 // constants of the law, which are summed.
-#ifndef TETLAP_FEM_GRADIENT_FRICTION_H
-#define TETLAP_FEM_GRADIENT_FRICTION_H
+#ifndef TETLAP_FEM_GRADIENT_EFFECT_FRICTION_H
+#define TETLAP_FEM_GRADIENT_EFFECT_FRICTION_H
 
 #include "fem/effect/contact/stick.h"
 #include "fem/effect/system.h"
