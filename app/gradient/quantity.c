@@ -28,8 +28,9 @@ static const char quantities[] = "displacement:BODY:AXIS, "
                                  "misfit:FILE";
 
 static Status fail_quantity(const char *text) {
-  return status_fail(STATUS_INPUT, "'%s' is none of the quantities %s, with AXIS x, y or z", text,
-                     quantities);
+  const char *advice = strchr(text, ',') ? "; each has an --of of its own" : "";
+  return status_fail(STATUS_INPUT, "'%s' is none of the quantities %s, with AXIS x, y or z%s", text,
+                     quantities, advice);
 }
 
 // Cuts at colons; more than MAX_WORDS: one more.

@@ -168,6 +168,7 @@ START_TEST(quantities_that_are_not_there_are_refused_by_name) {
   static const char *const wrong[][2] = {{"displacement:brick:z", "there are block"},
                                          {"displacement:block:w", "none of the quantities"},
                                          {"height:block:z", "none of the quantities"},
+                                         {"energy,energy:elastic", "each has an --of of its own"},
                                          {"position:block:8:z", "has the vertices 0 to 7"},
                                          {"force:block:block:z", "name two"},
                                          {"force:block:wall:z", "there are block, far"},
