@@ -386,7 +386,7 @@ static Status close_run(FemRunState *run, Status status) {
   double *states[] = {run->u, run->v, run->u_new, run->v_new, run->mean_velocity, run->halfway};
   for (size_t i = 0; i < sizeof states / sizeof *states; i++) memory_free(states[i]);
   fem_checkpoint_destroy(&run->checkpoint);
-  if (status) return status_fail(status, "%s%s", message, closing);
+  if (status) return fem_run_result_blame_model(run->result, status_fail(status, "%s%s", message, closing));
   return collected ? collected : left;
 }
 

@@ -113,6 +113,22 @@ static void append_line(char *text, size_t size, size_t *used, const char *forma
   text_append(text, size, used, "%s%s", *used > 0 ? "\n" : "", piece);
 }
 
+static const char UNSOUND[] = "pairs with a volume that no two such tetrahedra share";
+static const char MEND_MODEL[] =
+    "mend the model: with strict= before it a run ends at the first such pair and keeps it";
+
+static bool is_unsound(const FemRunResult *result) {
+  return (double)result->contact.pairs.unsound > FEM_DOUBT * (double)result->contact.pairs.tried;
+}
+
+Status fem_run_result_blame_model(const FemRunResult *result, Status status) {
+  char message[2048];
+  if (status != STATUS_SOLVER || !is_unsound(result)) return status;
+  snprintf(message, sizeof message, "%s", status_message());
+  return status_fail(status, "%s; before all else: %lld of %lld %s: %s", message,
+                     result->contact.pairs.unsound, result->contact.pairs.tried, UNSOUND, MEND_MODEL);
+}
+
 static void append_trouble(char *text, size_t size, size_t *used, const char *what, const char *place,
                            const char *advice) {
   append_line(text, size, used, "%s", what);
@@ -166,10 +182,9 @@ void fem_run_describe_trouble(const FemRunResult *result, const FemModel *model,
     append_trouble(text, size, &used, "pairs beyond the network's training", place,
                    "try contact.overlap: clip");
   }
-  if ((double)result->contact.pairs.unsound > FEM_DOUBT * (double)result->contact.pairs.tried) {
+  if (is_unsound(result)) {
     snprintf(place, sizeof place, "%lld of %lld", result->contact.pairs.unsound, result->contact.pairs.tried);
-    append_trouble(text, size, &used, "pairs with a volume that no two such tetrahedra share", place,
-                   "mend the model: with strict= before it a run ends at the first such pair and keeps it");
+    append_trouble(text, size, &used, UNSOUND, place, MEND_MODEL);
   }
   const FemStability *stability = &result->equilibrium.stability;
   if (stability->unstable > 0) {
@@ -196,7 +211,7 @@ void fem_run_describe_statistics(const FemRunResult *result, char *text, size_t 
               {"enclosed pairs", result->contact.pairs.enclosed},
               {"pairs answered by a more careful model", result->contact.pairs.fallbacks},
               {"pairs beyond the network's training", result->contact.pairs.beyond},
-              {"pairs with a volume that no two such tetrahedra share", result->contact.pairs.unsound}};
+              {UNSOUND, result->contact.pairs.unsound}};
   size_t used = 0;
   text[0] = 0;
   append_line(text, size, &used, "smallest det F %.3f (1: undeformed, 0: an element is flat)",

@@ -149,6 +149,9 @@ const char *fem_run_outcome(const FemRunResult *result, Status status);
 
 // The bodies that lie inside of each other, on one line.
 void fem_run_describe_inside(const FemRunInside *inside, const FemModel *model, char *text, size_t size);
+// Of a run that failed with `status` and the thread's message. Where the overlap model gave volumes that
+// cannot be, the message says so, too. Returns `status`.
+Status fem_run_result_blame_model(const FemRunResult *result, Status status);
 // The trouble that occurred, three lines each: what, where, what to do; or "none". `model`: the one that ran.
 void fem_run_describe_trouble(const FemRunResult *result, const FemModel *model, char *text, size_t size);
 // Extremes and counts that need no action, a line each.

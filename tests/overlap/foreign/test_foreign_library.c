@@ -386,6 +386,21 @@ START_TEST(a_run_of_such_volumes_has_trouble) {
 }
 END_TEST
 
+START_TEST(a_run_that_fails_by_such_volumes_says_so) {
+  char text[20000], folder[] = "/tmp/tetlap-foreign-XXXXXX", words[1000];
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  snprintf(
+      words, sizeof words,
+      "run %s/examples/02_two_blocks.yaml --set time.end=0.1 --set output.vtu=false --overlap lenient=%s "
+      "-o %s",
+      TETLAP_SOURCE_DIR, TETLAP_MODEL_9, folder);
+  ck_assert_int_eq(run_program(words, text), 70);
+  ck_assert_msg(strstr(text, "no two such tetrahedra share: mend the model"), "%s", text);
+  snprintf(words, sizeof words, "--version; rm -r %s", folder);
+  run_program(words, text);
+}
+END_TEST
+
 // A model that is right is left alone, to the bit.
 START_TEST(what_comes_out_is_looked_at_of_any_model) {
   static double own[PAIRS][24], slopes[2][PAIRS][72];
@@ -478,6 +493,7 @@ int main(void) {
   tcase_add_loop_test(cases, a_coordinate_that_is_not_finite_is_named, 0, 15);
   tcase_add_loop_test(cases, such_volumes_end_a_run_or_are_counted_as_asked, 0, 3);
   tcase_add_test(cases, a_run_of_such_volumes_has_trouble);
+  tcase_add_test(cases, a_run_that_fails_by_such_volumes_says_so);
   tcase_add_loop_test(cases, what_comes_out_is_looked_at_of_any_model, 0, 2);
   tcase_add_loop_test(cases, the_pair_that_ends_a_run_is_written_to_its_folder, 0, 2);
   tcase_add_test(cases, flat_and_disjoint_pairs_are_not_asked_for_unless_ghosts_are_kept);
