@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "app/plot/gnuplot.h"
+#include "app/plot/named.h"
 #include "base/files/file.h"
 #include "base/files/record.h"
 #include "base/memory.h"
@@ -86,18 +87,24 @@ static void close_source(Source *source) {
   fem_pvd_destroy(&source->frames);
 }
 
-static Status open_source(Source *source, const char *directory, const char *label) {
-  *source = (Source){.directory = directory, .label = label};
+static Status read_frames(FemPvdList *frames, const char *directory) {
   char *path = file_join(directory, "frames.pvd");
   if (!path) return status_no_memory("a file name");
-  Status status = file_exists(path) ? fem_pvd_read(path, &source->frames) : STATUS_OK;
+  Status status = file_exists(path) ? fem_pvd_read(path, frames) : STATUS_OK;
   memory_free(path);
+  if (status || frames->count > 0) return status;
+  return status_fail(STATUS_INPUT,
+                     "%s: has no frames to plot along a path; give the DIR of `tetlap run SCENE -o DIR` with "
+                     "output.vtu: true, or --along line:NAME of the scene's bodies[].lines",
+                     directory);
+}
+
+static Status open_source(Source *source, const AppPlotAlong *along, const char *directory,
+                          const char *label) {
+  *source = (Source){.directory = directory, .label = label};
+  Status status = along->path.kind == APP_PLOT_NAMED ? app_plot_named_frames(directory, &source->frames)
+                                                     : read_frames(&source->frames, directory);
   if (!status) status = record_read_in(&source->manifest, directory, "manifest.json");
-  if (!status && source->frames.count == 0)
-    status = status_fail(STATUS_INPUT,
-                         "%s: has no frames to plot along a path; give the DIR of `tetlap run SCENE -o DIR` "
-                         "with output.vtu: true (lines_NNNNN.csv are read by other programs)",
-                         directory);
   if (status) close_source(source);
   return status;
 }
@@ -223,13 +230,29 @@ static Status sample_frame(Series *series, const AppPlotAlong *along, const Sour
   return status;
 }
 
+static Status sample_line(Series *series, const AppPlotAlong *along, const Source *source, int run,
+                          int frame) {
+  AppPlotPoints points = {0};
+  char label[MAX_LABEL];
+  Status status = app_plot_named_read(&points, source->directory, frame, along->path.name, along->quantity);
+  if (!status && points.count) {
+    snprintf(label, sizeof label, "%s%s%.4g s", series->run_count > 1 ? source->label : "",
+             series->run_count > 1 ? ", " : "", source->frames.times[frame]);
+    write_series(series, &points, label, run);
+  }
+  memory_free(points.points);
+  return status;
+}
+
 static Status sample_run(Series *series, const AppPlotAlong *along, const char *directory, const char *label,
                          int run) {
   Source source;
   int frames[APP_PLOT_MAX_TIMES], count = 0;
-  TRY(open_source(&source, directory, label));
+  TRY(open_source(&source, along, directory, label));
   Status status = choose_frames(along, &source, frames, &count);
-  for (int k = 0; k < count && !status; k++) status = sample_frame(series, along, &source, run, frames[k]);
+  for (int k = 0; k < count && !status; k++)
+    status = along->path.kind == APP_PLOT_NAMED ? sample_line(series, along, &source, run, frames[k])
+                                                : sample_frame(series, along, &source, run, frames[k]);
   close_source(&source);
   return status;
 }
@@ -258,7 +281,8 @@ Status app_plot_along(FILE *script, const char *picture, const AppPlotAlong *alo
                       const char *const *directories, int count, const char *const *labels) {
   char *data = NULL, *plot = NULL;
   size_t data_size, plot_size;
-  Series series = {.is_line = along->path.kind == APP_PLOT_LINE && !(along->path.within > 0),
+  bool is_line = along->path.kind == APP_PLOT_LINE || along->path.kind == APP_PLOT_NAMED;
+  Series series = {.is_line = is_line && !(along->path.within > 0),
                    .run_count = count,
                    .data = open_memstream(&data, &data_size),
                    .plot = open_memstream(&plot, &plot_size)};
@@ -267,7 +291,8 @@ Status app_plot_along(FILE *script, const char *picture, const AppPlotAlong *alo
     status = sample_run(&series, along, directories[r], labels[r], r);
   if (!status && series.count == 0)
     status = status_fail(STATUS_INPUT, "%s: no %s of the frame; look at its positions", directories[0],
-                         series.is_line                      ? "line through elements"
+                         along->path.kind == APP_PLOT_NAMED  ? "number along that line"
+                         : series.is_line                    ? "line through elements"
                          : along->path.kind == APP_PLOT_LINE ? "vertex of a surface within --within"
                                                              : "vertex of a surface");
   bool is_whole = true;

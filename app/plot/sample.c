@@ -23,7 +23,7 @@ static bool read_place(const char *text, Vec3 *place, int *length) {
 }
 
 bool app_plot_path_read(AppPlotPath *path, const char *text) {
-  static const char radius[] = "radius:";
+  static const char radius[] = "radius:", line[] = "line:";
   int length;
   *path = (AppPlotPath){.kind = APP_PLOT_COORDINATE, .axis = axis_of(text[0])};
   if (path->axis >= 0 && !text[1]) return true;
@@ -33,6 +33,10 @@ bool app_plot_path_read(AppPlotPath *path, const char *text) {
     if (path->axis < 0) return false;
     return !text[1] || (text[1] == ':' && read_place(text + 2, &path->from, &length) && !text[2 + length]);
   }
+  if (strncmp(text, line, strlen(line)) == 0) {
+    path->kind = APP_PLOT_NAMED, path->name = text + strlen(line);
+    return *path->name;
+  }
   path->kind = APP_PLOT_LINE;
   if (!read_place(text, &path->from, &length) || text[length] != ':') return false;
   text += length + 1;
@@ -41,7 +45,7 @@ bool app_plot_path_read(AppPlotPath *path, const char *text) {
 }
 
 const char *app_plot_path_title(const AppPlotPath *path, char title[64]) {
-  const char axis = "xyz"[path->kind == APP_PLOT_LINE ? 0 : path->axis];
+  const char axis = "xyz"[path->axis < 0 ? 0 : path->axis];
   switch (path->kind) {
   case APP_PLOT_COORDINATE:
     snprintf(title, 64, "%c [m]", axis);
@@ -51,6 +55,9 @@ const char *app_plot_path_title(const AppPlotPath *path, char title[64]) {
     break;
   case APP_PLOT_LINE:
     snprintf(title, 64, "way along the line [m]");
+    break;
+  case APP_PLOT_NAMED:
+    snprintf(title, 64, "way along '%.40s' [m]", path->name);
     break;
   }
   return title;

@@ -230,6 +230,56 @@ START_TEST(what_is_not_there_is_refused_by_what_is) {
 }
 END_TEST
 
+static void write_lines(const char *name, const char *rows) {
+  char text[1000];
+  snprintf(text, sizeof text,
+           "line,time_s,way_m,x_m,y_m,z_m,displacement_x_m,displacement_y_m,"
+           "displacement_z_m,stress_xx_Pa,von_mises_Pa\n%s",
+           rows);
+  char path[sizeof folder + 32];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *file = fopen(path, "w");
+  ck_assert_ptr_nonnull(file);
+  ck_assert_int_ge(fputs(text, file), 0);
+  ck_assert_int_eq(fclose(file), 0);
+}
+
+START_TEST(a_line_of_the_scene_is_read_from_its_files) {
+  static const char rows[] = "top,2,0,0,0,0,3,4,12,7,1\nside,2,0,0,0,0,3,4,12,7,1\n"
+                             "side,2,0.5,0,0,0,0,0,-2,-8,nan\nside,2,1,0,0,0,0,0,1,9,5\n";
+  AppPlotAlong along = {.quantity = "displacement", .times = {2}, .time_count = 1};
+  ck_assert(app_plot_path_read(&along.path, "line:side"));
+  ck_assert(!app_plot_path_read(&along.path, "line:"));
+  ck_assert(app_plot_path_read(&along.path, "line:side"));
+  ck_assert_int_eq(draw(&along), STATUS_INPUT);
+  ck_assert_ptr_nonnull(strstr(status_message(), "has no lines_00000.csv; give the scene bodies[].lines"));
+  write_lines("lines_00000.csv", "side,0,0,0,0,0,0,0,0,0,0\n");
+  write_lines("lines_00001.csv", rows);
+  ck_assert_ok(draw(&along));
+  char *text = folder_read("along.svg.gp");
+  ck_assert_msg(strstr(text, "$series0 << END\n0 13\n0.5 2\n1 1\nEND\n") != NULL, "%s", text);
+  ck_assert_ptr_nonnull(strstr(text, "way along 'side' [m]"));
+  memory_free(text);
+  along.quantity = "von_mises"; // NaN is left out
+  ck_assert_ok(draw(&along));
+  text = folder_read("along.svg.gp");
+  ck_assert_msg(strstr(text, "$series0 << END\n0 1\n1 5\nEND\n") != NULL, "%s", text);
+  memory_free(text);
+  along.quantity = "stress:zz";
+  ck_assert_int_eq(draw(&along), STATUS_INPUT);
+  ck_assert_msg(
+      strstr(status_message(), "it has displacement:x, displacement:y, displacement:z, stress:xx, von_mises"),
+      "%s", status_message());
+  along.quantity = "stress:xx", along.path.name = "front";
+  ck_assert_int_eq(draw(&along), STATUS_INPUT);
+  ck_assert_msg(strstr(status_message(), "has no line 'front'; it has top, side"), "%s", status_message());
+  write_lines("lines_00001.csv", "side,2,0,0,0,0,3,4,12,7\n");
+  ck_assert_int_eq(draw(&along), STATUS_INPUT);
+  ck_assert_msg(strstr(status_message(), "lines_00001.csv:2: expected a name and 10 numbers"), "%s",
+                status_message());
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("plot_along");
   tcase_add_checked_fixture(tests, write_run, folder_remove);
@@ -238,6 +288,7 @@ int main(void) {
   tcase_add_test(tests, a_line_takes_the_vertices_near_it);
   tcase_add_test(tests, what_is_no_path_is_none);
   tcase_add_test(tests, a_script_has_a_curve_for_each_run_time_and_body);
+  tcase_add_test(tests, a_line_of_the_scene_is_read_from_its_files);
   tcase_add_test(tests, what_is_not_there_is_refused_by_what_is);
   return suite_run("plot_along", tests, 20);
 }

@@ -31,8 +31,8 @@ static void read_path(struct argp_state *state, void *member, char *text) {
     argp_error(
         state,
         "--along is '%s'; give x, y or z, radius:AXIS (of an axis through the origin), "
-        "radius:AXIS:X,Y,Z (through a point), or the ends of a line, as in 0,0,0:0,0,1; of a line of "
-        "bodies[].lines its from and to (its points, which move with the body, are in lines_NNNNN.csv)",
+        "radius:AXIS:X,Y,Z (through a point), the ends of a line, as in 0,0,0:0,0,1, or line:NAME, a line of "
+        "the scene (bodies[].lines)",
         text);
 }
 
@@ -50,10 +50,9 @@ static const AppOption option_table[] = {
      CLI_TO(Options, picture)},
     {"along", 0, "PATH",
      "Draw a quantity of the frames at the vertices of surfaces over x, y or z, over the distance from an "
-     "axis "
-     "(radius:z, or radius:z:X,Y,Z through a point), or where a line runs through elements (X,Y,Z:X,Y,Z), at "
-     "places of that frame: bodies[].lines, "
-     "whose points move with the body, are in lines_NNNNN.csv",
+     "axis (radius:z, or radius:z:X,Y,Z through a point), or where a line runs through elements "
+     "(X,Y,Z:X,Y,Z), at places of that frame; or along line:NAME of bodies[].lines, whose points move with "
+     "the body",
      1, CLI_OWN, CLI_TO(Options, along.path), .read = read_path, .mark_offset = offsetof(Options, is_along)},
     {"of", 0, "ARRAY[:COMPONENT]",
      "What --along draws, as contact_pressure or stress:zz; of a vector without x, y or z its length", 1,
@@ -129,6 +128,8 @@ static void check(struct argp_state *state, void *given) {
     argp_error(state, "--along needs what it draws, as in --of contact_pressure");
   if (!options->is_along && (along->quantity || along->body || along->time_count || options->has_within))
     argp_error(state, "--of, --at, --body and --within belong to --along; add it, as in --along x");
+  if (along->path.kind == APP_PLOT_NAMED && along->body)
+    argp_error(state, "a line of the scene is of one body; leave --body out");
   if (options->has_within && along->path.kind != APP_PLOT_LINE)
     argp_error(state, "--within is of a line; leave it out, or give --along X,Y,Z:X,Y,Z");
 }
