@@ -68,7 +68,7 @@ static const char *read_row(const Table *table, const char *row, double *numbers
   row += strcspn(row, ",\n");
   for (int k = 1; k < table->column_count; k++) {
     char *end;
-    if (*row != ',') return NULL;
+    if (*row != ',' || strchr(" \t\r\n", row[1])) return NULL; // strtod would read on in the next row
     numbers[k] = strtod(row + 1, &end);
     if (end == row + 1 || !strchr(",\n", *end)) return NULL;
     row = end;

@@ -275,7 +275,7 @@ START_TEST(a_line_of_the_scene_is_read_from_its_files) {
   ck_assert_msg(strstr(status_message(), "has no line 'front'; it has ") &&
                     strstr(status_message(), "top, side"),
                 "%s", status_message());
-  write_lines("lines_00001.csv", "side,2,0,0,0,0,3,4,12,7\n");
+  write_lines("lines_00001.csv", "side,2,0,0,0,0,3,4,12,7,\n1\n");
   ck_assert_int_eq(draw(&along), STATUS_INPUT);
   ck_assert_msg(strstr(status_message(), "lines_00001.csv:2: expected a name and 10 numbers"), "%s",
                 status_message());
